@@ -80,8 +80,8 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
                        volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
         double part = light.band[c] / rgb_sum(light), h = direct * part;
-        r->row.chance[c] += part * part * fmax(0.0, variance);
-        r->row.halves[c] += h * h * apart * apart;
+        r->row->chance[c] += part * part * fmax(0.0, variance);
+        r->row->halves[c] += h * h * apart * apart;
     }
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
@@ -257,7 +257,7 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
  * (count + 1), and its light may be missing. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
-    struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view->counts);
+    struct cut cut = cuts_at(cuts, r->row->leaf, &r->gather->view->counts);
     double each = make_offers(r, cuts, cut, segments);
     const struct offer *offers = r->gather->aims->offers;
     if (!(each > 0.0))
@@ -296,8 +296,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     }
     end_volley(r, &aim.volley, light);
     for (int c = 0; c < BANDS; c++) {
-        r->row.chance[c] = fmax(r->row.chance[c], around.band[c]);
-        r->row.halves[c] = fmax(r->row.halves[c], around.band[c]);
+        r->row->chance[c] = fmax(r->row->chance[c], around.band[c]);
+        r->row->halves[c] = fmax(r->row->halves[c], around.band[c]);
     }
 }
 
@@ -311,7 +311,7 @@ void receiver_aim_at_bright(struct receiver *r)
 void receiver_aim(struct receiver *r)
 {
     aim_at_cut(r, r->gather->aims->lamp_cuts, r->segments);
-    r->row.lamps = r->light;
+    r->row->lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
-    memcpy(r->row.of_segments, r->row.chance, sizeof r->row.of_segments);
+    memcpy(r->row->of_segments, r->row->chance, sizeof r->row->of_segments);
 }

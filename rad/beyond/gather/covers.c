@@ -57,7 +57,7 @@ static bool is_inside(struct receiver *r, struct vec3 origin)
 bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     bool single = false;
-    return r->sums.on_back &&
+    return r->sums->on_back &&
            ray_is_bound(r->gather->model, origin, direction, &single) &&
            is_inside(r, origin);
 }
@@ -93,13 +93,13 @@ static bool is_partly_outside(struct receiver *r)
 void receiver_find_outside(struct receiver *r)
 {
     int lost = 0;
-    if (r->sums.inside > 0 && r->sums.inside < r->rays && !is_partly_outside(r)) {
-        lost = r->sums.inside;
-        r->sums.inside = 0;
+    if (r->sums->inside > 0 && r->sums->inside < r->rays && !is_partly_outside(r)) {
+        lost = r->sums->inside;
+        r->sums->inside = 0;
     }
-    int outside = r->rays - r->sums.inside;
+    int outside = r->rays - r->sums->inside;
     if (outside > 0)
-        r->row.kept = 1.0f - fminf(1.0f, (float)(r->escaped + lost) / (float)outside);
+        r->row->kept = 1.0f - fminf(1.0f, (float)(r->escaped + lost) / (float)outside);
 }
 
 void receiver_find_covers(struct receiver *r)
@@ -109,11 +109,11 @@ void receiver_find_covers(struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
-    r->row.bare = 0.0f;
-    r->row.outside = 1.0f - (float)r->sums.inside / (float)r->rays;
-    r->row.open = r->row.outside - (float)r->sums.in_gap / (float)r->rays;
-    if (r->sums.inside == r->rays ||
-        (r->gather->sums->count == 0 && !(rgb_sum(r->row.source) > 0.0)))
+    r->row->bare = 0.0f;
+    r->row->outside = 1.0f - (float)r->sums->inside / (float)r->rays;
+    r->row->open = r->row->outside - (float)r->sums->in_gap / (float)r->rays;
+    if (r->sums->inside == r->rays ||
+        (r->gather->sums->count == 0 && !(rgb_sum(r->row->source) > 0.0)))
         return;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);
@@ -122,8 +122,8 @@ void receiver_find_covers(struct receiver *r)
         covered +=
             octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, FACES_APART)),
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
-            hit.triangle != r->facet.input && (hit.front || r->sums.inside == 0);
+            hit.triangle != r->facet.input && (hit.front || r->sums->inside == 0);
     }
-    double share = (double)covered / BARE_POINTS / (double)r->row.outside;
-    r->row.bare = 1.0f - (float)fmin(1.0, share);
+    double share = (double)covered / BARE_POINTS / (double)r->row->outside;
+    r->row->bare = 1.0f - (float)fmin(1.0, share);
 }

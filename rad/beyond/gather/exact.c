@@ -345,12 +345,12 @@ static bool close_row(struct receiver *r)
     double sum = sum_of_row(sums);
     bool partial = sum > 0.0 && sum < 1.0 - CLOSED;
     struct vec3 normal = r->facet.plane.normal, x = triangle_centroid(&r->facet.triangle);
-    r->sums.on_back = true;
+    r->sums->on_back = true;
     if (sum > 1.0 + CLOSED ||
         (partial && ray_comes_from_inside(r, point_above(x, normal), normal)))
         return false;
     r->gather->counts.exact++;
-    r->row.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
+    r->row->kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
     r->gather->counts.escaped += partial;
     for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)
@@ -375,7 +375,7 @@ bool receiver_add_exact(struct receiver *r)
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     double flat = g->sums->flat;
-    uint32_t root = forest->patches[r->row.leaf].id.root;
+    uint32_t root = forest->patches[r->row->leaf].id.root;
     const struct gather_view *view = view_of(g, (int32_t)root);
     bool good = view->open;
     g->sums->exact = true;

@@ -61,13 +61,13 @@ static double variance_by_shade(const struct quarter *quarters, const struct rgb
 static struct quarter look_at(struct receiver *r, const struct rgb *rho)
 {
     receiver_aim(r);
-    struct quarter quarter = {r->row.lamps, r->row.lamps, r->shares.direct, 0.0, 0.0};
+    struct quarter quarter = {r->row->lamps, r->row->lamps, r->shares.direct, 0.0, 0.0};
     receiver_fire(r); /* aims at bright patches, too */
-    rgb_add(&quarter.light, 1.0, r->sums.h);
+    rgb_add(&quarter.light, 1.0, r->sums->h);
     for (int c = 0; c < BANDS; c++) {
         double square = rho->band[c] * rho->band[c];
-        quarter.by_all += square * r->row.chance[c];
-        quarter.by_segments += square * r->row.of_segments[c];
+        quarter.by_all += square * r->row->chance[c];
+        quarter.by_segments += square * r->row->of_segments[c];
     }
     return quarter;
 }
@@ -96,19 +96,19 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 {
     const struct forest *forest = gather->model->forest;
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
-    struct receiver whole = receiver_of_leaf(gather, leaf, rays);
     struct gather_look look = {.cut = is_cut(gather, leaf)};
     struct quarter quarters[4];
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0, by_segments = 0.0;
     int64_t before = model_work(gather->model), fixed = gather->model->estimating;
-    whole.seed = hash_mix(patch_seed(forest, leaf) + 1);
-    whole.sums.each = each;
-    whole.looks = true;
     for (int k = 0; k < 4; k++) {
-        struct receiver r = whole;
-        r.facet.triangle = triangle_child(&whole.facet.triangle, k);
-        r.facet.area = 0.25 * whole.facet.area;
+        struct gather_row row = {.leaf = leaf};
+        struct ray_sums sums = {.each = each};
+        struct receiver r = receiver_of_leaf(gather, rays, &row, &sums);
+        r.seed = hash_mix(patch_seed(forest, leaf) + 1);
+        r.looks = true;
+        r.facet.triangle = triangle_child(&r.facet.triangle, k);
+        r.facet.area *= 0.25;
         quarters[k] = look_at(&r, rho);
         variance += 0.25 * quarters[k].by_all;
         by_segments += 0.25 * quarters[k].by_segments;

@@ -61,7 +61,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     struct point point;
     enum met met = meet(r, origin, direction, &stream->hits[ray], &point);
     if (ray_comes_from_inside(r, origin, direction)) {
-        r->sums.inside++;
+        r->sums->inside++;
         return;
     }
     if (met == MET_BACK)
@@ -70,10 +70,10 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         r->escaped += met != MET_FRONT;
     if (met != MET_FRONT)
         return;
-    r->sums.in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
+    r->sums->in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
     find_leaf(forest, point.patch, &point);
     if (path_is_aimed_at(r, &point, origin)) {
-        r->sums.aside[half]++;
+        r->sums->aside[half]++;
         return;
     }
     bool aimed = root_is_sender(r->gather->aims->lamps, point_root(r, &point));
@@ -88,11 +88,11 @@ static void count_light(struct receiver *r, int i, int half)
 {
     for (int c = 0; c < BANDS; c++) {
         double h = r->light.band[c];
-        r->sums.h.band[c] += h;
-        r->sums.squares.band[c] += h * h;
-        r->sums.half[half].band[c] += h;
-        if (r->sums.each)
-            r->sums.each[i].band[c] += h;
+        r->sums->h.band[c] += h;
+        r->sums->squares.band[c] += h * h;
+        r->sums->half[half].band[c] += h;
+        if (r->sums->each)
+            r->sums->each[i].band[c] += h;
         r->light.band[c] = 0.0;
     }
 }
@@ -100,16 +100,16 @@ static void count_light(struct receiver *r, int i, int half)
 /* Adds the variance by rays other than those that have met bright patches. */
 static void add_variances(struct receiver *r)
 {
-    double count[2] = {(r->rays + 1) / 2 - r->sums.aside[0],
-                       r->rays / 2 - r->sums.aside[1]};
+    double count[2] = {(r->rays + 1) / 2 - r->sums->aside[0],
+                       r->rays / 2 - r->sums->aside[1]};
     double all = count[0] + count[1];
     for (int c = 0; c < BANDS && all > 0.0; c++) {
-        double mean2 = r->sums.h.band[c] * r->sums.h.band[c] / all, apart = 0.0;
+        double mean2 = r->sums->h.band[c] * r->sums->h.band[c] / all, apart = 0.0;
         if (count[0] > 0.0 && count[1] > 0.0)
-            apart = 0.5 * all * (r->sums.half[0].band[c] / count[0] -
-                                 r->sums.half[1].band[c] / count[1]);
-        r->row.chance[c] += fmax(0.0, r->sums.squares.band[c] - mean2);
-        r->row.halves[c] += apart * apart;
+            apart = 0.5 * all * (r->sums->half[0].band[c] / count[0] -
+                                 r->sums->half[1].band[c] / count[1]);
+        r->row->chance[c] += fmax(0.0, r->sums->squares.band[c] - mean2);
+        r->row->halves[c] += apart * apart;
     }
 }
 
@@ -117,7 +117,7 @@ static void add_variances(struct receiver *r)
  * but those that are aimed at. */
 static double factor_of_rays(const struct receiver *r)
 {
-    int aside = r->sums.aside[0] + r->sums.aside[1];
+    int aside = r->sums->aside[0] + r->sums->aside[1];
     double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
     return rest / (aside < r->rays ? r->rays - aside : r->rays);
 }
@@ -146,7 +146,7 @@ static void add_bright(struct receiver *r, struct rgb source)
 {
     struct final_gather *g = r->gather;
     struct gather_sums *sums = g->sums;
-    struct rgb after = r->row.source;
+    struct rgb after = r->row->source;
     sums->first = sums->count;
     receiver_aim_at_bright(r);
     double factor = factor_of_rays(r);
@@ -155,8 +155,8 @@ static void add_bright(struct receiver *r, struct rgb source)
         for (int c = 0; c < BANDS; c++)
             sums->items[i].weight[c] *= factor;
     for (int c = 0; c < BANDS; c++) {
-        r->row.source.band[c] += (factor - 1.0) * (after.band[c] - source.band[c]);
-        r->sums.h.band[c] = factor * r->sums.h.band[c] + r->light.band[c];
+        r->row->source.band[c] += (factor - 1.0) * (after.band[c] - source.band[c]);
+        r->sums->h.band[c] = factor * r->sums->h.band[c] + r->light.band[c];
         r->light.band[c] = 0.0;
     }
 }
@@ -187,13 +187,13 @@ static void fill_stream(struct receiver *r, const struct sequence *sequence, int
         stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
     }
     octree_stream_hits(model->octree, stream, false, &model->counts);
-    r->sums.on_back = r->keeps && (r->sums.on_back || meets_backs(r, stream));
+    r->sums->on_back = r->keeps && (r->sums->on_back || meets_backs(r, stream));
 }
 
 void receiver_fire(struct receiver *r)
 {
     struct sequence sequence = sequence_start(r->seed);
-    struct rgb source = r->row.source;
+    struct rgb source = r->row->source;
     struct stream stream;
     double share = 1.0 / r->rays;
     for (int i = 0; i < r->rays; i++) {
@@ -206,7 +206,7 @@ void receiver_fire(struct receiver *r)
         count_light(r, i, half);
     }
     receiver_find_outside(r);
-    if (r->sums.inside == r->rays)
+    if (r->sums->inside == r->rays)
         return; /* what could be aimed at would be walls that things touch */
     add_variances(r);
     add_bright(r, source);

@@ -32,7 +32,7 @@ struct receiver {
     const struct gather_points *points; /* NULL: the receiver is a leaf */
     bool keeps;           /* its terms are kept, as a row, in the gather's sums */
     bool looks;           /* its light is compared: only what was found counts as noise */
-    struct gather_row row;
+    struct gather_row *row; /* borrowed */
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
@@ -43,14 +43,16 @@ struct receiver {
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct aimed_shares shares;
-    struct ray_sums sums;
+    struct ray_sums *sums; /* borrowed */
 };
 
 /* A number made of the ID of a patch. */
 uint64_t patch_seed(const struct forest *forest, int32_t patch);
 
-/* A receiver that is a leaf. */
-struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays);
+/* A receiver that is the leaf of the row, which has nothing else yet. Borrows row and
+ * sums. */
+struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
+                                 struct gather_row *row, struct ray_sums *sums);
 
 /* Adds `weight` times the mean radiosity of a patch. */
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);

@@ -12,8 +12,8 @@ static void keep_terms(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     int64_t first = final_gather_terms(g);
-    r->row.end = first + g->sums->count;
-    RESERVE(g->terms, &g->term_capacity, r->row.end);
+    r->row->end = first + g->sums->count;
+    RESERVE(g->terms, &g->term_capacity, r->row->end);
     for (int64_t i = 0; i < g->sums->count; i++) {
         const struct gather_sum *sum = &g->sums->items[i];
         struct gather_term term = {.place = sum->place, .near = sum->near};
@@ -23,13 +23,14 @@ static void keep_terms(struct receiver *r)
     }
 }
 
-/* A receiver on the patch. Rays beyond the points of a sequence would be the same. */
-static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
-                                     struct facet facet, uint64_t seed, int rays)
+/* A receiver on a patch. Rays beyond the points of a sequence would be the same. */
+static struct receiver receiver_make(struct final_gather *gather, struct facet facet,
+                                     uint64_t seed, int rays, struct gather_row *row,
+                                     struct ray_sums *sums)
 {
     rays = rays < SEQUENCE_POINTS ? rays : SEQUENCE_POINTS;
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
-                             .row = {.leaf = patch},
+                             .row = row, .sums = sums,
                              .along = direction_along(facet.plane.normal), .rays = rays,
                              .segments = rays, .near = -1};
 }
@@ -39,10 +40,11 @@ uint64_t patch_seed(const struct forest *forest, int32_t patch)
     return hash_mix(id_number(forest->patches[patch].id));
 }
 
-struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)
+struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
+                                 struct gather_row *row, struct ray_sums *sums)
 {
-    return receiver_make(gather, leaf, facet_make(gather->model->forest, leaf),
-                         patch_seed(gather->model->forest, leaf), rays);
+    return receiver_make(gather, facet_make(gather->model->forest, row->leaf),
+                         patch_seed(gather->model->forest, row->leaf), rays, row, sums);
 }
 
 /* The irradiance straight from lamps, by an exact row. */
@@ -65,12 +67,14 @@ static struct rgb light_of_lamps(const struct receiver *r)
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
                       bool exact)
 {
-    struct receiver r = receiver_of_leaf(gather, leaf, rays);
+    struct gather_row row = {.leaf = leaf};
+    struct ray_sums sums = {.each = NULL};
+    struct receiver r = receiver_of_leaf(gather, rays, &row, &sums);
     r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
     r.keeps = true;
     gather->sums->count = gather->sums->first = 0;
     if (exact && receiver_add_exact(&r)) {
-        r.row.lamps = light_of_lamps(&r);
+        row.lamps = light_of_lamps(&r);
     } else {
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         gather->sums->count = gather->sums->first = 0; /* of this row alone */
@@ -80,7 +84,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
     keep_terms(&r);
     receiver_find_covers(&r);
     RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
-    gather->rows[gather->count++] = r.row;
+    gather->rows[gather->count++] = row;
 }
 
 struct gather_light final_gather_at(struct final_gather *gather,
@@ -93,15 +97,17 @@ struct gather_light final_gather_at(struct final_gather *gather,
                           .input = scene_input_of(gather->model->scene, points->root)};
     struct point point = {.at = x};
     find_leaf(gather->model->forest, points->root, &point);
-    struct receiver r = receiver_make(gather, point.patch, facet, hash_mix(seed), count);
+    struct gather_row row = {.leaf = point.patch};
+    struct ray_sums sums = {.each = NULL};
+    struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
     struct gather_light light = {.variance = 0.0};
     r.points = points;
     receiver_aim(&r);
     if (all)
         receiver_fire(&r);
     for (int c = 0; c < BANDS; c++)
-        light.variance += r.row.chance[c];
-    light.lamps = r.row.lamps;
-    light.rest = r.sums.h;
+        light.variance += row.chance[c];
+    light.lamps = row.lamps;
+    light.rest = sums.h;
     return light;
 }

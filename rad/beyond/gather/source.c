@@ -25,7 +25,7 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
     receiver_add_near(r, weight, emission, factor);
     for (int c = 0; c < BANDS; c++) {
         double h = weight->band[c] * factor * emission.band[c];
-        r->row.source.band[c] += h;
+        r->row->source.band[c] += h;
         r->light.band[c] += h;
     }
 }
