@@ -467,9 +467,8 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct forest *forest = model->forest;
     struct gathered *told = &g->solver->beyond->answer.counts;
     size_t count = (size_t)g->count;
-    struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
-    struct rgb *r = alloc_array(count, sizeof *r);
-    struct rgb *answer = alloc_array(count, sizeof *answer);
+    struct rgb *b = alloc_array(4 * count, sizeof *b);
+    struct rgb *h = b + count, *r = h + count, *answer = r + count;
     share_near(g);
     share_covers(g);
     for (int64_t i = 0; i < g->count; i++)
@@ -499,9 +498,6 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     forest_average(forest);
     g->gather->cut = NULL;
     final_gather_renew(g->gather); /* as a stored solution has them */
-    alloc_free(answer);
-    alloc_free(r);
-    alloc_free(h);
     alloc_free(b);
 }
 

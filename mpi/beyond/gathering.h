@@ -47,7 +47,14 @@ static inline const struct material *gathering_material(const struct gathering *
 }
 
 /* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number:
- * [count]. */
-void gathering_share_rows(struct gathering *g, struct rgb *values);
+ * [count]. Rows lie where they were made, and all ranks know all vectors: this is the
+ * only exchange of a product with the rows. */
+static inline void gathering_share_rows(struct gathering *g, struct rgb *values)
+{
+    comm_share(g->solver->comm, g->all, g->stages->counts, g->stages->at, sizeof *g->all);
+    g->bytes += g->count * (int64_t)sizeof *g->all;
+    for (int64_t i = 0; i < g->count; i++)
+        values[i] = g->all[g->stages->place[i]];
+}
 
 #endif
