@@ -32,16 +32,11 @@ bool is_by_rays(const struct meeting *m)
     return m->near && (m->p->area <= m->q->area ? m->q->cluster : m->p->cluster) != NULL;
 }
 
-static uint64_t seed_of(const struct meeting *m, int salt)
-{
-    return hash_mix(hash_mix(id_number(m->p->id) + (uint64_t)salt) ^ id_number(m->q->id));
-}
-
 /* The triangle in which a sample lies: a root, or a quarter of a patch. */
 struct ground {
     int32_t root;
     struct triangle triangle;
-    struct vec3 normal;
+    struct vec3 normal, point; /* the sample */
 };
 
 static int32_t root_by_area(const struct cluster_tree *tree,
@@ -65,28 +60,22 @@ static struct ground ground_in(const struct model *model, const struct end *end,
                    ? root_by_area(tree, &tree->clusters[~child], hash_unit(seed))
                    : child;
     }
-    return (struct ground){root,
-                         end->cluster ? scene_root_triangle(model->scene, root)
-                                      : triangle_child(&end->facet.triangle, k),
-                         scene_root_plane(model->scene, root).normal};
+    return (struct ground){
+        .root = root,
+        .triangle = end->cluster ? scene_root_triangle(model->scene, root)
+                                 : triangle_child(&end->facet.triangle, k),
+        .normal = scene_root_plane(model->scene, root).normal};
 }
-
-/* A point on a root of a child of a cluster, or in a quarter of a patch. */
-struct sample {
-    int32_t root;
-    struct vec3 point, normal;
-};
 
 /* Samples of all children. Returns their number. */
 static int sample_children(const struct model *model, const struct end *end,
-                           uint64_t seed, struct sample samples[SAMPLES])
+                           uint64_t seed, struct ground samples[SAMPLES])
 {
     int count = 0;
     for (; count < SAMPLES && end_child_area(model, end, count) > 0.0; count++) {
         uint64_t own = seed + 4 * (uint64_t)count;
-        struct ground ground = ground_in(model, end, count, own);
-        samples[count] = (struct sample){
-            ground.root, triangle_sample(&ground.triangle, own + 1), ground.normal};
+        samples[count] = ground_in(model, end, count, own);
+        samples[count].point = triangle_sample(&samples[count].triangle, own + 1);
     }
     return count;
 }
@@ -103,17 +92,10 @@ static void add_exchange(struct node_exchange *found, int a, int b, double g, bo
     found->g_q[b] += g;
 }
 
-static bool is_seen(struct model *model, struct vec3 from, int32_t on, struct vec3 to,
-                    int32_t at, int32_t *blocker)
-{
-    const int32_t own[2] = {on, at};
-    return !octree_blocks_segment(model->octree, from, to, own, blocker, &model->counts);
-}
-
 static void look_from_afar(struct model *model, const struct meeting *m, uint64_t seed,
                            struct node_exchange *found)
 {
-    struct sample from[SAMPLES], to[SAMPLES];
+    struct ground from[SAMPLES], to[SAMPLES];
     int count_p = sample_children(model, m->p, seed, from);
     int count_q = sample_children(model, m->q, seed + 32, to);
     int32_t blocker = -1;
@@ -127,9 +109,10 @@ static void look_from_afar(struct model *model, const struct meeting *m, uint64_
             double r2 = vec3_dot(d, d), area_a = end_child_area(model, m->p, a);
             double g = area_a * end_child_area(model, m->q, b) *
                        (rise_a * rise_b / r2) / (PI * r2);
-            bool seen = is_seen(model, from[a].point,
-                                scene_input_of(model->scene, from[a].root), to[b].point,
-                                scene_input_of(model->scene, to[b].root), &blocker);
+            const int32_t own[2] = {scene_input_of(model->scene, from[a].root),
+                                    scene_input_of(model->scene, to[b].root)};
+            bool seen = !octree_blocks_segment(model->octree, from[a].point, to[b].point,
+                                               own, &blocker, &model->counts);
             add_exchange(found, a, b, g, seen);
         }
 }
@@ -187,7 +170,8 @@ struct node_exchange node_exchange_estimate(struct model *model,
                                             const struct meeting *m, int salt)
 {
     struct node_exchange found = {.area = 0.0};
-    uint64_t seed = seed_of(m, salt);
+    uint64_t seed =
+        hash_mix(hash_mix(id_number(m->p->id) + (uint64_t)salt) ^ id_number(m->q->id));
     if (is_by_rays(m))
         look_nearby(model, m, seed, &found);
     else

@@ -23,7 +23,8 @@
  * be fired. */
 enum { FACED_PER_RAY = 4 };
 
-/* A root is slender if the square of its radius is more than this times its area. */
+/* A root is slender if the square of its radius is more than this times its area: its
+ * points are far apart for its width, and mean factors would take too many of them. */
 static const double SLENDER = 64.0;
 
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
@@ -97,14 +98,6 @@ static bool is_overlapped(struct final_gather *g, int32_t root)
     return *known == 2;
 }
 
-/* The points of a slender triangle are far apart for its width, so its mean factors would
- * take too many of them. */
-static bool is_slender(const struct facet *root)
-{
-    double radius = triangle_radius(&root->triangle);
-    return radius * radius > SLENDER * root->area;
-}
-
 /* Lists the roots that a root faces. True if they are few, and nothing hides any of them
  * as far as segments tell; if `proof`, too. Segments find most blockers. */
 static bool is_open(struct final_gather *g, int32_t number, bool proof)
@@ -115,7 +108,8 @@ static bool is_open(struct final_gather *g, int32_t number, bool proof)
     struct vec3 middle = triangle_centroid(&root.facet.triangle);
     int32_t guess = -1;
     view->count = 0;
-    bool open = !is_slender(&root.facet) && view_node(g, &root, NODE_TOP);
+    bool slender = root.radius * root.radius > SLENDER * root.area;
+    bool open = !slender && view_node(g, &root, NODE_TOP);
     for (int64_t i = 0; i < view->count && open; i++) {
         struct facet other = facet_make(g->model->forest, view->faced[i]);
         const int32_t own[2] = {root.facet.input, other.input};

@@ -95,15 +95,6 @@ static double power_of(const struct building *b, int32_t node)
     return b->before[cluster->end] - b->before[cluster->first];
 }
 
-static void add_sender(struct senders *senders, int32_t patch, double power)
-{
-    int64_t place = senders->sender_count++;
-    RESERVE(senders->patches, &senders->sender_capacity, place + 1);
-    RESERVE(senders->before, &senders->before_capacity, place + 2);
-    senders->patches[place] = patch;
-    senders->before[place + 1] = senders->before[place] + power;
-}
-
 /* Appends a node that has senders, and then those below it. Returns its number. */
 static int32_t add_node(struct building *b, int32_t node)
 {
@@ -114,8 +105,13 @@ static int32_t add_node(struct building *b, int32_t node)
                               .first = (int32_t)senders->sender_count};
     RESERVE(senders->nodes, &senders->capacity, senders->count);
     bool single = !node_is_cluster(node) && senders->part_of[node] == node;
-    if (single)
-        add_sender(senders, node, b->power[node]);
+    if (single) {
+        int64_t place = senders->sender_count++;
+        RESERVE(senders->patches, &senders->sender_capacity, place + 1);
+        RESERVE(senders->before, &senders->before_capacity, place + 2);
+        senders->patches[place] = node;
+        senders->before[place + 1] = senders->before[place] + b->power[node];
+    }
     for (int k = 0, count = 0; k < 4 && !single; k++) {
         int32_t child = node_child(senders->model, node, k);
         if (child != NODE_NONE && power_of(b, child) > 0.0)
