@@ -105,7 +105,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         struct gather_row row = {.leaf = leaf};
         struct ray_sums sums = {.each = each};
         struct receiver r = receiver_of_leaf(gather, rays, &row, &sums);
-        r.seed = hash_mix(patch_seed(forest, leaf) + 1);
+        r.seed = hash_mix(r.seed + 1);
         r.looks = true;
         r.facet.triangle = triangle_child(&r.facet.triangle, k);
         r.facet.area *= 0.25;

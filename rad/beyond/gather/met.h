@@ -6,18 +6,18 @@
 #include "rad/beyond/gather/receiver.h"
 
 struct point {
+    int32_t root;
     int32_t patch;     /* leaf of the forest */
     double weight[3];  /* barycentric coordinates in the leaf, 1 */
     struct vec3 at, normal;
 };
 
-/* Finds the leaf of the root that the point lies on. */
-static inline void find_leaf(const struct forest *forest, int32_t root,
-                             struct point *point)
+/* Finds the leaf of its root that the point lies on. */
+static inline void find_leaf(const struct forest *forest, struct point *point)
 {
-    struct triangle t = scene_root_triangle(forest->scene, root);
+    struct triangle t = scene_root_triangle(forest->scene, point->root);
     triangle_weights(&t, point->at, point->weight);
-    point->patch = root;
+    point->patch = point->root;
     while (!patch_is_leaf(&forest->patches[point->patch])) {
         int k = triangle_child_at(point->weight);
         point->patch = forest->patches[point->patch].children + k;
@@ -26,7 +26,7 @@ static inline void find_leaf(const struct forest *forest, int32_t root,
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 
-/* What a ray has met; fills in the point of a front, with the root as its patch. */
+/* What a ray has met; fills in the point of a front, but for its leaf. */
 static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 direction,
                             const struct octree_hit *hit, struct point *point)
 {
@@ -41,7 +41,7 @@ static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 
     double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
-    point->patch = root;
+    point->root = root;
     point->normal = plane.normal;
     return MET_FRONT;
 }
@@ -62,7 +62,7 @@ static inline enum met trace(struct receiver *r, struct vec3 origin,
 {
     enum met met = probe(r, origin, direction, point);
     if (met == MET_FRONT)
-        find_leaf(r->gather->model->forest, point->patch, point);
+        find_leaf(r->gather->model->forest, point);
     return met;
 }
 

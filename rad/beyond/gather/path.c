@@ -21,22 +21,13 @@ static const double BESIDE = 2.0;
 /* Most points of a path; those from which it goes on in any case. */
 enum { PATH_MOST = 256, PATH_SURE = 2 };
 
-static bool is_beside(const struct forest *forest, int32_t patch, struct vec3 x)
-{
-    struct triangle t = forest_triangle(forest, patch);
-    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
-    double radius = triangle_radius(&t);
-    return vec3_dot(apart, apart) < BESIDE * radius * radius;
-}
-
 /* True if the point that a path has met is of a lamp, which is aimed at from x on its
  * way. */
 static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
-    int32_t root = point_root(r, met);
-    return root_is_sender(r->gather->aims->lamps, root) &&
-           !receiver_lamp_is_near(r->gather->model->scene, root, x);
+    return root_is_sender(r->gather->aims->lamps, met->root) &&
+           !receiver_lamp_is_near(r->gather->model->scene, met->root, x);
 }
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of
@@ -89,7 +80,12 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x)
 {
     int32_t bright = r->gather->aims->bright->part_of[met->patch];
-    return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
+    if (bright < 0)
+        return false;
+    struct triangle t = forest_triangle(r->gather->model->forest, bright);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    double radius = triangle_radius(&t);
+    return !(vec3_dot(apart, apart) < BESIDE * radius * radius) &&
            (r->points || path_ends(r, met, x));
 }
 
@@ -139,9 +135,9 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     int32_t root = (int32_t)forest->patches[patch].id.root;
-    struct point point = {.at = y,
+    struct point point = {.root = root, .at = y,
                           .normal = scene_root_plane(forest->scene, root).normal};
-    find_leaf(forest, root, &point);
+    find_leaf(forest, &point);
     if (!path_is_aimed_at(r, &point, x))
         return;
     r->shares.bright += factor;

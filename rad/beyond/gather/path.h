@@ -5,11 +5,6 @@
 
 #include "rad/beyond/gather/met.h"
 
-static inline int32_t point_root(const struct receiver *r, const struct point *point)
-{
-    return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
-}
-
 /* Adds the mesh's light at a point; `aimed`: without emission. */
 static inline void path_add_mesh(struct receiver *r, const struct point *point,
                                  bool aimed, const struct rgb *weight)

@@ -71,12 +71,12 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     if (met != MET_FRONT)
         return;
     r->sums->in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
-    find_leaf(forest, point.patch, &point);
+    find_leaf(forest, &point);
     if (path_is_aimed_at(r, &point, origin)) {
         r->sums->aside[half]++;
         return;
     }
-    bool aimed = root_is_sender(r->gather->aims->lamps, point_root(r, &point));
+    bool aimed = root_is_sender(r->gather->aims->lamps, point.root);
     if (!path_ends(r, &point, origin))
         begin_path(r, &point, aimed, &weight);
     path_go_on(r, point, origin, aimed, weight, seed, true);
@@ -113,15 +113,6 @@ static void add_variances(struct receiver *r)
     }
 }
 
-/* The factor of the weights of rays that are not put aside: they stand for all directions
- * but those that are aimed at. */
-static double factor_of_rays(const struct receiver *r)
-{
-    int aside = r->sums->aside[0] + r->sums->aside[1];
-    double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
-    return rest / (aside < r->rays ? r->rays - aside : r->rays);
-}
-
 /* Adds the light of the row's paths to that of the leaves too near that they have
  * met first. `factor`: of their weights, and so of the area: else leaves would be seen
  * too bright from afar. */
@@ -149,7 +140,9 @@ static void add_bright(struct receiver *r, struct rgb source)
     struct rgb after = r->row->source;
     sums->first = sums->count;
     receiver_aim_at_bright(r);
-    double factor = factor_of_rays(r);
+    int aside = r->sums->aside[0] + r->sums->aside[1];
+    double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
+    double factor = rest / (aside < r->rays ? r->rays - aside : r->rays);
     add_paths(g->near, r, factor);
     for (int64_t i = 0; i < sums->first; i++)
         for (int c = 0; c < BANDS; c++)

@@ -46,9 +46,6 @@ struct receiver {
     struct ray_sums *sums; /* borrowed */
 };
 
-/* A number made of the ID of a patch. */
-uint64_t patch_seed(const struct forest *forest, int32_t patch);
-
 /* A receiver that is the leaf of the row, which has nothing else yet. Borrows row and
  * sums. */
 struct receiver receiver_of_leaf(struct final_gather *gather, int rays,

@@ -35,16 +35,12 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
                              .segments = rays, .near = -1};
 }
 
-uint64_t patch_seed(const struct forest *forest, int32_t patch)
-{
-    return hash_mix(id_number(forest->patches[patch].id));
-}
-
 struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
                                  struct gather_row *row, struct ray_sums *sums)
 {
-    return receiver_make(gather, facet_make(gather->model->forest, row->leaf),
-                         patch_seed(gather->model->forest, row->leaf), rays, row, sums);
+    const struct forest *forest = gather->model->forest;
+    uint64_t seed = hash_mix(id_number(forest->patches[row->leaf].id));
+    return receiver_make(gather, facet_make(forest, row->leaf), seed, rays, row, sums);
 }
 
 /* The irradiance straight from lamps, by an exact row. */
@@ -95,8 +91,8 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct facet facet = {.triangle = {{x, x, x}},
                           .plane = points->plane,
                           .input = scene_input_of(gather->model->scene, points->root)};
-    struct point point = {.at = x};
-    find_leaf(gather->model->forest, points->root, &point);
+    struct point point = {.root = points->root, .at = x};
+    find_leaf(gather->model->forest, &point);
     struct gather_row row = {.leaf = point.patch};
     struct ray_sums sums = {.each = NULL};
     struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
