@@ -28,16 +28,6 @@ static double exchange_of(const struct polygon *a, const struct polygon *b)
     return polygon_exchange(a->corner, a->count, b->corner, b->count);
 }
 
-static double area_of(const struct polygon *a)
-{
-    return polygon_area(a->corner, a->count);
-}
-
-static struct polygon polygon_of(const struct triangle *t)
-{
-    return (struct polygon){3, {t->corner[0], t->corner[1], t->corner[2]}};
-}
-
 /* The rectangle o, o + u, o + u + v, o + v. */
 static struct polygon rectangle(struct vec3 o, struct vec3 u, struct vec3 v)
 {
@@ -258,9 +248,10 @@ struct solid {
 static void add_rows(struct tally *tally, const struct solid *solid)
 {
     for (int i = 0; i < solid->count; i++) {
-        double sum = 0.0, area = area_of(&solid->face[i]);
+        const struct polygon *own = &solid->face[i];
+        double sum = 0.0, area = polygon_area(own->corner, own->count);
         for (int j = 0; j < solid->count; j++)
-            sum += exchange_of(&solid->face[i], &solid->face[j]);
+            sum += exchange_of(own, &solid->face[j]);
         tally_add(tally, sum, area, area);
     }
 }
@@ -302,8 +293,9 @@ static struct solid split_tetrahedron(void)
     struct solid whole = unit_tetrahedron(), solid = {.count = 16};
     for (int i = 0; i < 16; i++) {
         const struct vec3 *c = whole.face[i / 4].corner;
-        struct triangle t = {{c[0], c[1], c[2]}}, child = triangle_child(&t, i % 4);
-        solid.face[i] = polygon_of(&child);
+        struct triangle t = {{c[0], c[1], c[2]}};
+        t = triangle_child(&t, i % 4);
+        solid.face[i] = (struct polygon){3, {t.corner[0], t.corner[1], t.corner[2]}};
     }
     return solid;
 }
