@@ -128,7 +128,7 @@ static bool show_pictures(struct run *run)
     double start = comm_seconds();
     if (run->options.view_count == 0)
         place_camera(run);
-    struct answer *answer = run->solver->beyond ? &run->solver->beyond->answer : NULL;
+    struct answer *answer = run->solver->beyond ? run->solver->beyond->answer : NULL;
     struct rgb *colours = show_colours(run);
     bool gathers = answer && (answer->straight || run->options.pixels) &&
                    !run->options.flat && !colours;

@@ -154,7 +154,7 @@ static void share_solution(struct run *run)
 static void restore_answer(struct solver *solver, const struct solution_mesh *solution)
 {
     struct forest *forest = solver->model.forest;
-    struct answer *answer = &solver->beyond->answer;
+    struct answer *answer = solver->beyond->answer;
     size_t count = (size_t)forest->count;
     answer->gather = final_gather_create(&solver->model,
                                          solver->model.criterion.final_gather, NULL);

@@ -60,14 +60,14 @@ static const double NEARLY_ALL_HELD = 0.97, MANY_HELD = 0.1;
 static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
     struct beyond *beyond = solver->beyond;
-    double estimate = beyond->answer.counts.error;
-    beyond->accuracy.clear = spotcheck_settle(check, &beyond->answer.counts);
+    double estimate = beyond->answer->counts.error;
+    beyond->accuracy.clear = spotcheck_settle(check, &beyond->answer->counts);
     double larger =
-        estimate > 0.0 ? fmax(1.0, beyond->answer.counts.error / estimate) : 1.0;
+        estimate > 0.0 ? fmax(1.0, beyond->answer->counts.error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
-        beyond->answer.error[p] *= (float)larger;
-    beyond->answer.counts.median *= larger;
-    beyond->answer.counts.percentile_90 *= larger;
+        beyond->answer->error[p] *= (float)larger;
+    beyond->answer->counts.median *= larger;
+    beyond->answer->counts.percentile_90 *= larger;
 }
 
 /* --- limits --- */
@@ -103,7 +103,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
     if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
     bool stuck = (epsilon <= LOWERED * accuracy->coarse_epsilon &&
-                  solver->beyond->answer.counts.by_mesh > STUCK * accuracy->coarse) ||
+                  solver->beyond->answer->counts.by_mesh > STUCK * accuracy->coarse) ||
                  epsilon * EPSILON_FACTOR_MOST < SMALLEST_EPSILON;
     if (share > NEARLY_ALL_HELD || (stuck && share > MANY_HELD))
         return hold;
@@ -138,7 +138,7 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 {
     struct criterion *criterion = &solver->model.criterion;
     int before = criterion->final_gather;
-    for (double left = solver->beyond->answer.counts.by_rays;
+    for (double left = solver->beyond->answer->counts.by_rays;
          left > allowed && criterion->final_gather < RAYS_FACTOR_MOST * before &&
          hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
          left *= NOISE_OF_TWICE)
@@ -151,7 +151,7 @@ static void lower_epsilon(struct solver *solver, double allowed)
 {
     struct criterion *criterion = &solver->model.criterion;
     struct accuracy *accuracy = &solver->beyond->accuracy;
-    double mesh = solver->beyond->answer.counts.by_mesh, part = allowed / mesh;
+    double mesh = solver->beyond->answer->counts.by_mesh, part = allowed / mesh;
     double lower = fmax(EPSILON_FACTOR_LEAST, part * part * part);
     lower = fmin(EPSILON_FACTOR_MOST, lower);
     bool much = criterion->epsilon <= LOWERED * accuracy->coarse_epsilon;
@@ -165,8 +165,8 @@ static void lower_epsilon(struct solver *solver, double allowed)
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
 static bool tighten(struct solver *solver, int64_t links, bool *lowered)
 {
-    double by_rays = solver->beyond->answer.counts.by_rays;
-    double by_mesh = solver->beyond->answer.counts.by_mesh;
+    double by_rays = solver->beyond->answer->counts.by_rays;
+    double by_mesh = solver->beyond->answer->counts.by_mesh;
     double aim = AIM * solver->model.criterion.accuracy;
     enum hold mesh = hold_of_mesh(solver, links);
     enum hold rays = hold_of_rays(solver, solver->model.criterion.final_gather, links);
@@ -194,11 +194,11 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 {
     struct accuracy *accuracy = &solver->beyond->accuracy;
     accuracy->rounds++;
-    if (solver->beyond->answer.counts.checked == 0) {
+    if (solver->beyond->answer->counts.checked == 0) {
         accuracy->hold = HOLD_NOTHING;
         return false;
     }
-    if (solver->beyond->answer.counts.error <= solver->model.criterion.accuracy)
+    if (solver->beyond->answer->counts.error <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds >= ROUNDS_MOST) {
         double share;

@@ -20,11 +20,11 @@ static void report(const struct solver *solver, struct stats *stats)
     stats->accuracy = solver->model.criterion.accuracy;
     stats->hold = beyond->accuracy.hold;
     stats->rounds = beyond->accuracy.rounds;
-    stats->memory_limited = stats->memory_limited || beyond->answer.counts.limited;
+    stats->memory_limited = stats->memory_limited || beyond->answer->counts.limited;
     stats->converged =
         stats->converged && stats->hold == HOLD_NONE && !stats->memory_limited;
-    stats->error_estimate = beyond->answer.counts.error;
-    stats->gathered = beyond->answer.counts;
+    stats->error_estimate = beyond->answer->counts.error;
+    stats->gathered = beyond->answer->counts;
     stats->bytes_broadcast += (int64_t)beyond->tree_block.bytes;
 }
 
@@ -43,10 +43,11 @@ static void end(struct solver *solver)
     above_free(solver);
     conjugate_free(beyond->descent);
     alloc_free(beyond->descent);
-    alloc_free(beyond->answer.error);
-    alloc_free(beyond->answer.straight);
-    alloc_free(beyond->answer.outside);
-    final_gather_destroy(beyond->answer.gather);
+    alloc_free(beyond->answer->error);
+    alloc_free(beyond->answer->straight);
+    alloc_free(beyond->answer->outside);
+    final_gather_destroy(beyond->answer->gather);
+    alloc_free(beyond->answer);
     alloc_free(beyond);
 }
 
@@ -56,6 +57,7 @@ struct beyond *beyond_attach(struct solver *solver)
         return solver->beyond;
     struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
     beyond->descent = alloc_array(1, sizeof *beyond->descent);
+    beyond->answer = alloc_array(1, sizeof *beyond->answer);
     solver->steps.report = report;
     solver->steps.end = end;
     return beyond;
@@ -64,7 +66,7 @@ struct beyond *beyond_attach(struct solver *solver)
 const struct answer *beyond_answer(const struct solver *solver)
 {
     static const struct answer NONE = {.error = NULL};
-    return solver->beyond ? &solver->beyond->answer : &NONE;
+    return solver->beyond ? solver->beyond->answer : &NONE;
 }
 
 struct solver *beyond_create(const struct comm *comm, const struct scene *scene,

@@ -34,7 +34,7 @@ struct beyond {
     struct node_block tree_block; /* the memory of a tree that is a view */
     struct conjugate *descent;
     struct accuracy accuracy;
-    struct answer answer;
+    struct answer *answer;
 };
 
 /* Collective. Creates a solver for any criterion. Borrows comm, scene and octree. */

@@ -102,8 +102,8 @@ static void gathering_end(struct gathering *g)
 {
     if (g->gather)
         final_gather_drop_rows(g->gather);
-    final_gather_destroy(g->solver->beyond->answer.gather); /* of a round before */
-    g->solver->beyond->answer.gather = g->gather;
+    final_gather_destroy(g->solver->beyond->answer->gather); /* of a round before */
+    g->solver->beyond->answer->gather = g->gather;
     gather_mesh_free(g->mesh);
     alloc_free(g->areas);
     alloc_free(g->covers);
@@ -137,7 +137,7 @@ static bool make_rows(struct gathering *g)
                       g->mesh->traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
-    solver->beyond->answer.counts = (struct gathered){
+    solver->beyond->answer->counts = (struct gathered){
         .rays = sums[2], .segments = sums[3], .exact = sums[4],
         .terms = sums[5], .looks = sums[6], .split = g->mesh->split,
         .limited = g->mesh->limited};
@@ -396,7 +396,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
  * shares that are open. */
 static void share_answer(struct gathering *g)
 {
-    struct answer *answer = &g->solver->beyond->answer;
+    struct answer *answer = g->solver->beyond->answer;
     struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
     struct rgb *open = alloc_array((size_t)g->count, sizeof *open);
@@ -465,7 +465,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
 {
     const struct model *model = &g->solver->model;
     struct forest *forest = model->forest;
-    struct gathered *told = &g->solver->beyond->answer.counts;
+    struct gathered *told = &g->solver->beyond->answer->counts;
     size_t count = (size_t)g->count;
     struct rgb *b = alloc_array(4 * count, sizeof *b);
     struct rgb *h = b + count, *r = h + count, *answer = r + count;

@@ -267,9 +267,9 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
-    alloc_free(solver->beyond->answer.error);
+    alloc_free(solver->beyond->answer->error);
     float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
-    solver->beyond->answer.error = error;
+    solver->beyond->answer->error = error;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
         struct rgb b = g->radiosity[g->gather->place[g->leaves[i]]];
@@ -287,11 +287,11 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     }
     for (int64_t i = 0; i < g->count; i++)
         rgb_add(&rays[i], 1.0, mesh[i]);
-    rank_errors(g, rays, remaining, &solver->beyond->answer.counts);
+    rank_errors(g, rays, remaining, &solver->beyond->answer->counts);
     if (light > 0.0) {
-        solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
-        solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);
-        solver->beyond->answer.counts.error =
+        solver->beyond->answer->counts.by_rays = sqrt(by_rays / light);
+        solver->beyond->answer->counts.by_mesh = sqrt(by_mesh / light);
+        solver->beyond->answer->counts.error =
             sqrt((by_rays + by_mesh) / light + remaining * remaining);
     }
     alloc_free(rays);

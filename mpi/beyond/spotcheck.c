@@ -95,7 +95,7 @@ struct merit {
 static struct merit merit_of(const struct checking *c, int32_t leaf)
 {
     double area = forest_area(c->solver->model.forest, leaf);
-    double error = (double)c->solver->beyond->answer.error[leaf];
+    double error = (double)c->solver->beyond->answer->error[leaf];
     struct rgb b = reflected(c->solver->model.forest, leaf);
     return (struct merit){area, area * rgb_dot(b, b), area * error * error};
 }
@@ -238,7 +238,7 @@ static void check_leaves(struct checking *c, double goal)
 
 struct spotcheck spotcheck_run(struct solver *solver, double goal)
 {
-    const struct gathered *gathered = &solver->beyond->answer.counts;
+    const struct gathered *gathered = &solver->beyond->answer->counts;
     double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
     struct pathtracer pathtracer =
         pathtracer_make(solver->model.scene, solver->model.octree);

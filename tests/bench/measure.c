@@ -265,10 +265,10 @@ static void report(const struct measure *measure, struct solution *s,
                    const struct shading *shading, int argc, char **argv)
 {
     const struct forest *forest = s->solver->model.forest;
-    bool gathers = s->solver->beyond->answer.straight && !measure->options.flat;
+    bool gathers = s->solver->beyond->answer->straight && !measure->options.flat;
     struct renderer renderer =
         renderer_make(s->octree, shading,
-                      gathers ? s->solver->beyond->answer.gather : NULL);
+                      gathers ? s->solver->beyond->answer->gather : NULL);
     struct measured answer = {
         .stats = s->stats,
         .seconds = s->seconds,

@@ -14,7 +14,7 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
                     struct vec3 at)
 {
     struct renderer renderer =
-        renderer_make(s->octree, shading, s->solver->beyond->answer.gather);
+        renderer_make(s->octree, shading, s->solver->beyond->answer->gather);
     struct vec3 x = scene_from_input(s->scene, at);
     for (int32_t root = first; root < first + 2; root++) {
         double weight[3];
@@ -28,7 +28,7 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
 
 static struct shading *shade_rest(const struct solution *s)
 {
-    const struct answer *answer = &s->solver->beyond->answer;
+    const struct answer *answer = s->solver->beyond->answer;
     return shading_create(s->solver->model.forest, answer->straight, answer->error,
                           answer->outside);
 }
@@ -94,7 +94,7 @@ static void test_noise(void)
 {
     struct solution s = half_shadow(4096);
     struct shading *shading = shade_rest(&s);
-    const struct gather_counts *counts = &s.solver->beyond->answer.gather->counts;
+    const struct gather_counts *counts = &s.solver->beyond->answer->gather->counts;
     int64_t before = counts->segments;
     shown(&s, shading, 0, point(0.43, 0.015, 0.0));
     int64_t fired = counts->segments - before;
@@ -115,7 +115,7 @@ static void test_furnace(void)
     paint(&soup, 0.5, 0.5);
     struct solution s = solve_soup(&soup, "--epsilon 1e-2");
     struct renderer renderer =
-        renderer_make(s.octree, NULL, s.solver->beyond->answer.gather);
+        renderer_make(s.octree, NULL, s.solver->beyond->answer->gather);
     double worst = 0.0;
     int points = 0;
     for (int32_t root = 0; root < scene_root_count(s.scene); root++)
@@ -171,7 +171,7 @@ static void test_slot(void)
     paint(&soup, 0.0, 10.0);
     struct solution s = solve_soup(&soup, "--max-level 0");
     struct shading *shading = shade_rest(&s);
-    const struct gather_counts *counts = &s.solver->beyond->answer.gather->counts;
+    const struct gather_counts *counts = &s.solver->beyond->answer->gather->counts;
     int32_t floor = 0;
     while (scene_root_plane(s.scene, floor).normal.z < 0.9)
         floor += 2;
@@ -363,7 +363,7 @@ static void look_at_half(struct progress *progress)
 static void test_order(void)
 {
     struct solution s = half_shadow(64);
-    struct final_gather *gather = s.solver->beyond->answer.gather;
+    struct final_gather *gather = s.solver->beyond->answer->gather;
     struct renderer renderer = renderer_make(s.octree, NULL, gather);
     struct camera camera = {.eye = point(0, -4, 1), .at = point(0, 4, 1),
                             .up = point(0, 0, 1), .fov = 40.0, .width = 8};

@@ -23,7 +23,7 @@ static void test_mesh(double epsilon)
     snprintf(words, sizeof words, "--epsilon %g", epsilon);
     struct solution s = solve_soup(&soup, words);
     const struct forest *forest = s.solver->model.forest;
-    const struct gathered *gathered = &s.solver->beyond->answer.counts;
+    const struct gathered *gathered = &s.solver->beyond->answer->counts;
     double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.005 * epsilon;
     for (int pass = 0; pass < 2; pass++)
         for (int32_t p = 0; p < forest->count; p++) {
@@ -71,7 +71,7 @@ static void test_near(void)
     soup_add_box(&soup, point(0.4, 0.4, 0.7), point(0.6, 0.6, 0.9), 1, false);
     paint(&soup, 0.0, 1.0);
     struct solution s = solve_soup(&soup, "--epsilon 0.1 --max-level 0");
-    double closing = s.solver->beyond->answer.counts.closing;
+    double closing = s.solver->beyond->answer->counts.closing;
     tap_ok(closing < 0.02, "irradiances are raised by %.1f %% to close a balance",
            100.0 * closing);
     solution_free(&s);
@@ -85,10 +85,10 @@ static void test_even(void)
     soup_add_box(&soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
     paint(&soup, 0.5, 1.0);
     struct solution s = solve_soup(&soup, "--epsilon 1e-2");
-    tap_ok(s.solver->beyond->answer.counts.split == 0 &&
-               s.solver->beyond->answer.counts.looks > 0,
+    tap_ok(s.solver->beyond->answer->counts.split == 0 &&
+               s.solver->beyond->answer->counts.looks > 0,
            "in a furnace nothing is split, by %lld rays",
-           (long long)s.solver->beyond->answer.counts.looks);
+           (long long)s.solver->beyond->answer->counts.looks);
     solution_free(&s);
 }
 
@@ -156,7 +156,7 @@ static void test_chance(void)
     soup_add_box(&soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
     paint(&soup, 0.5, 0.0);
     struct solution s = solve_soup(&soup, "--epsilon 0.1");
-    const struct gathered *gathered = &s.solver->beyond->answer.counts;
+    const struct gathered *gathered = &s.solver->beyond->answer->counts;
     int64_t cube = s.stats.leaves - WALLS;
     tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
            "of 12 leaves whose light varies by chance alone %lld are split",
@@ -221,7 +221,7 @@ static double surface_within(const struct solution *s, double part)
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
         double light = forest->radiosity[leaf].band[0] -
                        forest_material(forest, leaf)->emission.band[0];
-        double error = (double)s->solver->beyond->answer.error[leaf];
+        double error = (double)s->solver->beyond->answer->error[leaf];
         if (!(light > 0.0))
             continue;
         all += forest_area(forest, leaf);
@@ -242,7 +242,7 @@ static void test_own_errors(void)
     paint(&soup, 0.0, 1.0);
     struct solution s =
         solve_soup(&soup, "--epsilon 1e-3 --final-gather 32 --tolerance 1e-9");
-    const struct gathered *told = &s.solver->beyond->answer.counts;
+    const struct gathered *told = &s.solver->beyond->answer->counts;
     double half = surface_within(&s, told->median);
     double most = surface_within(&s, told->percentile_90);
     tap_ok(fabs(half - 0.5) < 0.02 && fabs(most - 0.9) < 0.02,

@@ -71,7 +71,7 @@ int main(int argc, char **argv)
     spoil(&s, 1, 1.5);
     expect(&s, 0.25 / (11.0 + 2.25), "one of twelve by a half");
     for (int64_t p = 0; p < s.solver->model.forest->count; p++)
-        s.solver->beyond->answer.error[p] =
+        s.solver->beyond->answer->error[p] =
             s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);

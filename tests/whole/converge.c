@@ -56,7 +56,7 @@ static struct result run(const struct comm *comm, const char *path,
                             .links = s.stats.links};
     if (comm->rank == 0) {
         const struct forest *forest = s.solver->model.forest;
-        struct answer *answer = &s.solver->beyond->answer;
+        struct answer *answer = s.solver->beyond->answer;
         struct shading *shading =
             shading_create(forest, answer->straight, answer->error, answer->outside);
         struct renderer renderer =

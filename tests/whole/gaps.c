@@ -186,7 +186,7 @@ static void test_room(void)
         if (!patch_is_leaf(&forest->patches[p]) || leaves++ % step > 0)
             continue;
         struct found found = {reflected(&s, p),
-                              (double)s.solver->beyond->answer.error[p]};
+                              (double)s.solver->beyond->answer->error[p]};
         enum verdict verdict = judge_leaf(&pathtracer, forest->patches[p].id, found,
                                           SEEN * mean, &truth);
         double times = fmax(found.light / truth, truth / found.light);
@@ -249,7 +249,7 @@ static void test_errors(struct scene *scene, uint32_t roots, const char *options
         all += forest->patches[p].id.root < roots;
     for (int64_t p = 0, step = all < LOOKED ? 1 : all / LOOKED; p < forest->count; p++) {
         struct found found = {reflected(&s, (int32_t)p),
-                              (double)s.solver->beyond->answer.error[p]};
+                              (double)s.solver->beyond->answer->error[p]};
         if (forest->patches[p].id.root >= roots || seen++ % step != step / 2 ||
             !patch_is_leaf(&forest->patches[p]) ||
             !(rgb_sum(forest_material(forest, (int32_t)p)->reflectance) > 0.0))
@@ -343,7 +343,7 @@ static void test_black_plain(void)
     for (int lit = 0; lit < 2; lit++) {
         struct solution s =
             solve_scene(room_to_the_sky(lit), "--epsilon 1e-3 --final-gather 64");
-        by_rays[lit] = s.solver->beyond->answer.counts.by_rays;
+        by_rays[lit] = s.solver->beyond->answer->counts.by_rays;
         solution_free(&s);
     }
     tap_ok(fabs(by_rays[1] / by_rays[0] - 1.0) <= 0.1,
@@ -388,7 +388,7 @@ static void test_white_room(double rho)
     for (int32_t i = 0; i < white->material_count; i++)
         white->materials[i].reflectance = (struct rgb){{rho, rho, rho}};
     struct solution s = solve_scene(white, "--epsilon 1e-3 --final-gather 64");
-    const struct gathered *told = &s.solver->beyond->answer.counts;
+    const struct gathered *told = &s.solver->beyond->answer->counts;
     double escaped = s.stats.escaped_power / s.stats.emitted_power;
     tap_ok(s.vote.converged && told->closing <= 1.0 / 300.0,
            "a white room of rho %g is solved for: %.2f %% off its balance, estimated "

@@ -116,7 +116,7 @@ static struct answer_in_dark light_of(struct soup *soup, int32_t count)
             continue;
         area += forest_area(forest, leaf);
         dark.error += forest_area(forest, leaf) *
-                      (double)s.solver->beyond->answer.error[leaf];
+                      (double)s.solver->beyond->answer->error[leaf];
     }
     dark.error /= area;
     solution_free(&s);

@@ -632,7 +632,7 @@ static void test_fifteen_levels(void)
 static double mean_shown(struct solution *s)
 {
     enum { GRID = 32 };
-    struct answer *answer = &s->solver->beyond->answer;
+    struct answer *answer = s->solver->beyond->answer;
     struct shading *shading = shading_create(s->solver->model.forest, answer->straight,
                                              answer->error, answer->outside);
     struct renderer renderer = renderer_make(s->octree, shading, answer->gather);
@@ -680,7 +680,7 @@ static void test_hole(const char *name, double width, double height)
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; forest->patches[leaf].id.root < 2; leaf = forest_next_leaf(forest, leaf))
         claimed += forest_area(forest, leaf) / (2.0 * forest_area(forest, 0)) *
-                   (double)s.solver->beyond->answer.error[leaf];
+                   (double)s.solver->beyond->answer->error[leaf];
     tap_ok(s.vote.converged && fabs(leaves - exact) <= claimed,
            "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %%, %.2f "
            "claimed",

@@ -556,10 +556,10 @@ static void test_loose(void)
         double off = fabs(forest->radiosity[p].band[0] - 1.0);
         squares += forest_area(forest, p) * off * off;
         light += forest_area(forest, p) * 0.7 * 0.7;
-        held += off <= (double)s.solver->beyond->answer.error[p];
+        held += off <= (double)s.solver->beyond->answer->error[p];
         leaves++;
     }
-    double rms = sqrt(squares / light), said = s.solver->beyond->answer.counts.error;
+    double rms = sqrt(squares / light), said = s.solver->beyond->answer->counts.error;
     tap_ok(rms > 1e-6 && rms <= said && held >= 0.95 * leaves,
            "a loose furnace is off by %.1e, %.1e is said; %d of %d leaves hold", rms,
            said, held, leaves);
