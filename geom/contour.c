@@ -410,29 +410,39 @@ static int compare_polygons(const struct vec3 *a, int32_t count_a, const struct 
     return 0;
 }
 
+static double exchange_of_parts(const struct parts *a, const struct parts *b)
+{
+    if (compare_polygons(a->corners, a->count, b->corners, b->count) > 0)
+        return exchange_of_parts(b, a);
+    struct vec3 origin = a->corners[0];
+    int exponent;
+    frexp(fmax(extent_of(a->corners, a->count, origin),
+               extent_of(b->corners, b->count, origin)), &exponent);
+    double scale = ldexp(1.0, -exponent), sum = 0.0;
+    for (int32_t i = 0; i < a->parts; i++)
+        for (int32_t j = 0; j < b->parts; j++) {
+            struct shape shape_a = part_shape(a, i, origin, scale);
+            struct shape shape_b = part_shape(b, j, origin, scale);
+            sum += exchange_of_shapes(&shape_a, &shape_b);
+        }
+    double limit =
+        fmin(polygon_area(a->corners, a->count), polygon_area(b->corners, b->count));
+    return fmin(sum / (scale * scale), limit);
+}
+
 double polygon_exchange(const struct vec3 *a, int32_t count_a, const struct vec3 *b,
                         int32_t count_b)
 {
-    if (compare_polygons(a, count_a, b, count_b) > 0)
-        return polygon_exchange(b, count_b, a, count_a);
-    struct vec3 origin = a[0];
-    int exponent;
-    frexp(fmax(extent_of(a, count_a, origin), extent_of(b, count_b, origin)), &exponent);
-    double scale = ldexp(1.0, -exponent), sum = 0.0;
     struct parts parts_a = parts_create(a, count_a), parts_b = parts_create(b, count_b);
-    for (int32_t i = 0; i < parts_a.parts; i++)
-        for (int32_t j = 0; j < parts_b.parts; j++) {
-            struct shape shape_a = part_shape(&parts_a, i, origin, scale);
-            struct shape shape_b = part_shape(&parts_b, j, origin, scale);
-            sum += exchange_of_shapes(&shape_a, &shape_b);
-        }
+    double area = exchange_of_parts(&parts_a, &parts_b);
     alloc_free(parts_a.triangles);
     alloc_free(parts_b.triangles);
-    double limit = fmin(polygon_area(a, count_a), polygon_area(b, count_b));
-    return fmin(sum / (scale * scale), limit);
+    return area;
 }
 
 double triangle_exchange(const struct triangle *a, const struct triangle *b)
 {
-    return polygon_exchange(a->corner, 3, b->corner, 3);
+    struct parts whole_a = {.corners = a->corner, .count = 3, .parts = 1};
+    struct parts whole_b = {.corners = b->corner, .count = 3, .parts = 1};
+    return exchange_of_parts(&whole_a, &whole_b);
 }
