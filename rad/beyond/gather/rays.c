@@ -77,8 +77,11 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         return;
     }
     bool aimed = root_is_sender(r->gather->aims->lamps, point.root);
-    if (!path_ends(r, &point, origin))
-        begin_path(r, &point, aimed, &weight);
+    if (path_ends(r, &point, origin)) { /* as most do */
+        path_add_mesh(r, &point, aimed, &weight);
+        return;
+    }
+    begin_path(r, &point, aimed, &weight);
     path_go_on(r, point, origin, aimed, weight, seed, true);
 }
 
