@@ -199,10 +199,9 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
     RESERVE(l->mesh->cut, &l->mesh->cut_capacity, l->solver->model.forest->count);
     l->mesh->cut[leaf] = look->cut;
-    double all = look->variance + spread_of(look);
-    double by_segment = fmin(all, look->of_segment);
     l->known[leaf] =
-        (struct known){all - by_segment, by_segment, look->fixed, look->work};
+        (struct known){look->variance + spread_of(look) - look->of_segment,
+                       look->of_segment, look->fixed, look->work};
 }
 
 /* (rho H)^2 of a leaf, as links or looks tell it. */

@@ -74,7 +74,6 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
     double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
     double variance =
         volley->seen2 + share * (share * volley->direct2 - 2.0 * volley->both);
-    r->shares.direct += direct;
     if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
         apart = 0.5 * (volley->seen[0] / volley->direct[0] -
                        volley->seen[1] / volley->direct[1]);

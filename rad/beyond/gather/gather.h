@@ -25,7 +25,7 @@ struct gather_look {
                                   of all */
     double variance;           /* of rho H of a ray with its segment, over bands,
                                   (W/m^2)^2 */
-    double of_segment;         /* that of the segment, over the whole leaf */
+    double of_segment;         /* that of the segment */
     float fixed;               /* tests of a quarter, without its rays */
     float work;                /* tests of each ray */
     bool cut;                  /* a thing stands on the leaf */

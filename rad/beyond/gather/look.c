@@ -11,13 +11,6 @@
 #include "geom/hash.h"
 #include "rad/beyond/sample.h"
 
-/* What a quarter has found. */
-struct quarter {
-    struct rgb light, lamps;      /* H by all, straight from lamps, W/m^2 */
-    double direct;                /* over all bands, if nothing hid lamps, W/m^2 */
-    double by_all, by_segments;   /* variance of rho H by chance, over bands, (W/m^2)^2 */
-};
-
 /* The variance by chance, over bands, that the quarters have in common: their rays have
  * the same directions. `each`, [rays]: H by each ray, summed over quarters. */
 static double variance_in_common(const struct rgb *each, int rays, const struct rgb *rho)
@@ -32,44 +25,6 @@ static double variance_in_common(const struct rgb *each, int rays, const struct 
         variance += 0.0625 * rho->band[c] * rho->band[c] * (squares - sum * sum / rays);
     }
     return fmax(0.0, variance);
-}
-
-/* The variance of rho H over the leaf that comes from different shares of the lamps being
- * hidden from its quarters, over bands. */
-static double variance_by_shade(const struct quarter *quarters, const struct rgb *rho)
-{
-    struct rgb lamps = {{0.0, 0.0, 0.0}};
-    double direct = 0.0, variance = 0.0, square = 0.0;
-    for (int k = 0; k < 4; k++) {
-        direct += quarters[k].direct;
-        rgb_add(&lamps, 1.0, quarters[k].lamps);
-    }
-    double seen = rgb_sum(lamps);
-    if (!(seen > 0.0))
-        return 0.0;
-    for (int k = 0; k < 4; k++) {
-        double off = rgb_sum(quarters[k].lamps) - seen * (quarters[k].direct / direct);
-        variance += 0.25 * off * off;
-    }
-    for (int c = 0; c < BANDS; c++) {
-        double part = rho->band[c] * lamps.band[c] / seen;
-        square += part * part;
-    }
-    return variance * square;
-}
-
-static struct quarter look_at(struct receiver *r, const struct rgb *rho)
-{
-    receiver_aim(r);
-    struct quarter quarter = {r->row->lamps, r->row->lamps, r->shares.direct, 0.0, 0.0};
-    receiver_fire(r); /* aims at bright patches, too */
-    rgb_add(&quarter.light, 1.0, r->sums->h);
-    for (int c = 0; c < BANDS; c++) {
-        double square = rho->band[c] * rho->band[c];
-        quarter.by_all += square * r->row->chance[c];
-        quarter.by_segments += square * r->row->of_segments[c];
-    }
-    return quarter;
 }
 
 /* True if a thing stands on the leaf or across it: just above the leaf something is
@@ -97,7 +52,6 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     const struct forest *forest = gather->model->forest;
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct gather_look look = {.cut = is_cut(gather, leaf)};
-    struct quarter quarters[4];
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0, by_segments = 0.0;
     int64_t before = model_work(gather->model), fixed = gather->model->estimating;
@@ -109,15 +63,18 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         r.looks = true;
         r.facet.triangle = triangle_child(&r.facet.triangle, k);
         r.facet.area *= 0.25;
-        quarters[k] = look_at(&r, rho);
-        variance += 0.25 * quarters[k].by_all;
-        by_segments += 0.25 * quarters[k].by_segments;
-        for (int c = 0; c < BANDS; c++)
-            look.reflected[k][c] = (float)(rho->band[c] * quarters[k].light.band[c]);
+        receiver_aim(&r);
+        receiver_fire(&r); /* aims at bright patches, too */
+        for (int c = 0; c < BANDS; c++) {
+            double part = rho->band[c], square = 0.25 * part * part;
+            look.reflected[k][c] = (float)(part * (row.lamps.band[c] + sums.h.band[c]));
+            variance += square * row.chance[c];
+            by_segments += square * row.of_segments[c];
+        }
     }
     look.noise = fmax(0.0, variance - variance_in_common(each, rays, rho));
     look.variance = variance * rays;
-    look.of_segment = by_segments * rays + variance_by_shade(quarters, rho);
+    look.of_segment = by_segments * rays;
     fixed = gather->model->estimating - fixed;
     look.fixed = 0.25f * (float)fixed;
     look.work =

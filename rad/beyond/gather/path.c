@@ -140,7 +140,7 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     find_leaf(forest, &point);
     if (!path_is_aimed_at(r, &point, x))
         return;
-    r->shares.bright += factor;
+    r->bright += factor;
     path_go_on(r, point, x, root_is_sender(g->aims->lamps, root),
                (struct rgb){{factor, factor, factor}}, seed, true);
 }

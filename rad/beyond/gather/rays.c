@@ -144,7 +144,7 @@ static void add_bright(struct receiver *r, struct rgb source)
     sums->first = sums->count;
     receiver_aim_at_bright(r);
     int aside = r->sums->aside[0] + r->sums->aside[1];
-    double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
+    double rest = fmax(0.0, 1.0 - r->bright) * r->rays;
     double factor = rest / (aside < r->rays ? r->rays - aside : r->rays);
     add_paths(g->near, r, factor);
     for (int64_t i = 0; i < sums->first; i++)

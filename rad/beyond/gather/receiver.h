@@ -19,13 +19,6 @@ struct ray_sums {
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };
 
-/* Shares of the view that are aimed at. */
-struct aimed_shares {
-    double bright; /* form factor of bright patches, 1 */
-    double direct; /* light of all that is aimed at, over all bands, if nothing hid any,
-                      W/m^2 */
-};
-
 struct receiver {
     struct final_gather *gather;
     struct facet facet;   /* the leaf; for points, a triangle without extent */
@@ -42,7 +35,7 @@ struct receiver {
     int32_t near;         /* place of the leaf too near that the ray at hand met first;
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
-    struct aimed_shares shares;
+    double bright;        /* form factor of the bright patches that are aimed at, 1 */
     struct ray_sums *sums; /* borrowed */
 };
 
