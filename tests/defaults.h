@@ -92,7 +92,7 @@ static inline double shown_at(const struct solution *s, const struct shading *sh
     }
     for (int k = 0; k < 3; k++)
         best[k] = fmax(best[k], 0.0);
-    return shading_at(shading, root, best, &(int32_t){0}).band[0];
+    return shading_at(shading, shading->values, root, best).band[0];
 }
 
 #endif

@@ -44,7 +44,7 @@ static inline void split_regularly(struct forest *forest, int level)
 static inline struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
 {
     const double weight[3] = {w.x, w.y, w.z};
-    return shading_at(stage->shading, root, weight, &(int32_t){0});
+    return shading_at(stage->shading, stage->shading->values, root, weight);
 }
 
 #endif

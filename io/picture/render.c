@@ -13,8 +13,9 @@
  * where interpolation does not hold (io/picture/shading.h): on a leaf that counts as
  * covered but is seen, as the side of a book that stands out from its neighbours; on a
  * steep leaf, in the housing of a lamp. All points of a pixel on one triangle are
- * gathered together; where that is noisy, as where lamps are seen in part, a second time
- * by more rays.
+ * gathered together, by few segments; a second time by more where these are noisy, as
+ * where lamps are seen in part, or where the mesh has another light of lamps: few
+ * segments may all arrive, or all miss, and seem sure.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -32,23 +33,25 @@
 #include "rad/beyond/sample.h"
 
 enum {
-    SEGMENTS = 32, /* to lamps, for a pixel, at least */
-    RAYS_PER_SEGMENT = 8, /* --final-gather for one of them */
+    SEGMENTS = 4,  /* to lamps, for a pixel, at first */
+    LEAST = 4,     /* --final-gather over the fewest in a pixel that is not sure */
+    MOST = 2,      /* the same over the most */
     WHOLE = 128,   /* rays and segments for a pixel in which things cover the leaf */
     STEEP = 512,   /* the same on a steep leaf */
-    MORE = 4       /* factor on all of these in a noisy pixel */
+    MORE = 4       /* most factor on these two */
 };
 
-static const double NOISE = 0.01; /* error of a noisy pixel, relative to its light */
+/* A pixel is not sure if its light has this deviation by chance, or is so far from that
+ * of the mesh, relative to the geometric mean of it and of what all surfaces reflect: a
+ * display shows differences by the root of light. .03 are about two codes of 255. */
+static const double NOISE = 0.03, APART = 0.01; /* 1 */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
                               struct final_gather *gather)
 {
-    struct renderer renderer = {.octree = octree, .shading = shading, .gather = gather};
     int rays = gather ? gather->model->criterion.final_gather : 0;
-    int segments = rays / RAYS_PER_SEGMENT;
-    renderer.rays = !shading ? rays : segments > SEGMENTS ? segments : SEGMENTS;
-    return renderer;
+    double mean = gather ? forest_mean_reflected(gather->model->forest) : 0.0;
+    return (struct renderer){octree, shading, gather, rays, mean};
 }
 
 /* --- visible points --- */
@@ -66,9 +69,9 @@ struct pixel_roots {
 
 /* Light of a pixel. */
 struct pixel_light {
-    struct rgb sum;  /* of the radiosities that the camera rays meet, W/m^2 */
-    double variance; /* of `sum` by the choice of segments and rays, over bands,
-                        (W/m^2)^2 */
+    struct rgb sum;   /* of the radiosities that the camera rays meet, W/m^2 */
+    struct rgb apart; /* by how much the light of lamps in it is more than the mesh's */
+    double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
 };
 
 /* Least cosine between the normal at a corner and that of the plane, 45 degrees, for
@@ -105,13 +108,14 @@ static struct facade facade_make(const struct scene *scene, int32_t root)
 static struct vec3 facade_point(const struct facade *facade, struct vec3 weight)
 {
     struct vec3 x = corners_mean(facade->triangle.corner, weight), lifts[3];
+    if (!facade->curved)
+        return x;
     for (int k = 0; k < 3; k++) {
         struct vec3 normal = facade->normals[k];
         double below = vec3_dot(vec3_sub(facade->triangle.corner[k], x), normal);
         lifts[k] = vec3_scale(normal, below > 0.0 ? below : 0.0);
     }
-    x = vec3_add(x, corners_mean(lifts, weight));
-    return facade->curved ? point_above(x, facade->plane.normal) : x;
+    return point_above(vec3_add(x, corners_mean(lifts, weight)), facade->plane.normal);
 }
 
 /* Returns the tangent plane at x, the point with these coordinates. */
@@ -129,6 +133,7 @@ static struct plane facade_plane(const struct facade *facade, struct vec3 weight
 static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
                       int count, uint64_t seed, int rays, struct pixel_light *pixel)
 {
+    const struct shading *shading = renderer->shading;
     struct final_gather *gather = renderer->gather;
     const struct scene *scene = gather->model->scene;
     const struct material *m = scene_root_material(scene, view->roots[0]);
@@ -145,11 +150,17 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     points.plane = facade_plane(&facade, middle, points.middle);
     bool whole = view->whole[0] > 0;
     struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
-    double rho = 0.0;
+    double rho = 0.0, w[3] = {middle.x, middle.y, middle.z};
+    struct rgb other = m->emission, mesh = {{0.0, 0.0, 0.0}};
+    if (!whole) {
+        other = shading_at(shading, shading->values, view->roots[0], w);
+        mesh = shading_at(shading, shading->lamps, view->roots[0], w);
+    }
     for (int c = 0; c < BANDS; c++) {
         double h = light.lamps.band[c] + light.rest.band[c];
-        double e = whole ? m->emission.band[c] : 0.0;
-        pixel->sum.band[c] += count * (e + m->reflectance.band[c] * h);
+        double b = m->reflectance.band[c] * h;
+        pixel->sum.band[c] += count * (other.band[c] + b);
+        pixel->apart.band[c] += whole ? 0.0 : count * (b - mesh.band[c]);
         rho = fmax(rho, m->reflectance.band[c]);
     }
     pixel->variance += count * count * rho * rho * light.variance;
@@ -174,38 +185,42 @@ static int collect_root(struct pixel_roots *view)
 }
 
 /* Returns the number of rays for a pixel of points such as entry i, all light of which is
- * to be gathered; or 0, and sets `light` to that which is interpolated. */
+ * to be gathered; or 0: reflected light is interpolated. */
 static int rays_for_all(const struct renderer *renderer, const struct pixel_roots *view,
-                        int i, struct rgb *light)
+                        int i)
 {
     const struct shading *shading = renderer->shading;
-    struct vec3 w = view->weights[i];
-    int32_t leaf;
+    double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
     if (!shading)
         return renderer->rays;
-    *light = shading_at(shading, view->roots[i], (double[]){w.x, w.y, w.z}, &leaf);
-    enum shade shade = shading->shades[leaf];
-    if (!renderer->gather || shade == SHADE_SMOOTH)
-        return 0;
-    return shade == SHADE_STEEP ? STEEP : WHOLE;
+    enum shade shade = shading->shades[shading_leaf_at(shading, view->roots[i], w)];
+    return shade == SHADE_SMOOTH ? 0 : shade == SHADE_STEEP ? STEEP : WHOLE;
 }
 
-/* Returns the light of all entries together, gathered by `more` times the usual rays.
- * Reorders the entries. */
+/* Returns the light of all entries together, as the mesh has it. */
+static struct rgb show_mesh(const struct shading *shading, const struct pixel_roots *view)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    for (int i = 0; i < view->count; i++) {
+        double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
+        rgb_add(&sum, 1.0, shading_at(shading, shading->values, view->roots[i], w));
+    }
+    return sum;
+}
+
+/* Returns the light of all entries together, gathered by `more` times the fewest
+ * segments, or rays. Reorders the entries. */
 static struct pixel_light show(const struct renderer *renderer,
                                const struct pixel_roots *view, uint64_t seed, int more)
 {
     struct pixel_light pixel = {.variance = 0.0};
-    for (int i = 0; i < view->count; i++) {
-        struct rgb b = {{0.0, 0.0, 0.0}};
-        view->whole[i] = rays_for_all(renderer, view, i, &b);
-        for (int c = 0; c < BANDS && view->whole[i] == 0; c++)
-            pixel.sum.band[c] += b.band[c];
-    }
+    for (int i = 0; i < view->count; i++)
+        view->whole[i] = rays_for_all(renderer, view, i);
     struct pixel_roots rest = *view;
-    while (rest.count > 0 && renderer->gather) {
+    while (rest.count > 0) {
         int count = collect_root(&rest);
-        int all = more * (rest.whole[0] > 0 ? rest.whole[0] : renderer->rays);
+        int all = rest.whole[0] > 0 ? rest.whole[0] * (more < MORE ? more : MORE)
+                                    : SEGMENTS * more;
         int own = (all * count + view->count - 1) / view->count;
         add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], own,
                   &pixel);
@@ -217,17 +232,28 @@ static struct pixel_light show(const struct renderer *renderer,
     return pixel;
 }
 
-/* The same; a noisy pixel a second time by more rays. */
+/* The factor on the fewest segments by which a pixel is found again; 1: it is sure. */
+static int more_for(const struct renderer *renderer, const struct pixel_light *pixel,
+                    int count)
+{
+    double square = rgb_sum(pixel->sum) * count * renderer->mean;
+    double noise = pixel->variance / (NOISE * NOISE * square);
+    double apart = rgb_sum(pixel->apart) / APART;
+    int all = renderer->rays / SEGMENTS, most = all / MOST, least = all / LEAST;
+    if (!(noise > 1.0) && apart * apart <= square)
+        return 1;
+    return noise < least ? least : noise < most ? (int)noise : most;
+}
+
+/* The same by few segments, and where that is not sure by more, other ones. */
 static struct rgb show_well(const struct renderer *renderer,
                             const struct pixel_roots *view, uint64_t seed)
 {
+    if (!renderer->gather)
+        return show_mesh(renderer->shading, view);
     struct pixel_light pixel = show(renderer, view, seed, 1);
-    double most = NOISE * rgb_sum(pixel.sum), square = most * most;
-    if (renderer->shading && pixel.variance > square) {
-        double wanted = ceil(pixel.variance / square); /* or infinite, in the dark */
-        pixel = show(renderer, view, seed, wanted < MORE ? (int)wanted : MORE);
-    }
-    return pixel.sum;
+    int more = renderer->shading ? more_for(renderer, &pixel, view->count) : 1;
+    return more > 1 ? show(renderer, view, seed, more).sum : pixel.sum;
 }
 
 struct rgb render_point(const struct renderer *renderer, int32_t root,

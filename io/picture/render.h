@@ -13,7 +13,8 @@ struct renderer {
     const struct shading *shading; /* all light; with `gather`, not the direct; or NULL */
     struct final_gather *gather;   /* direct light, and all where `shading` does not
                                       hold; without `shading`, all; or NULL */
-    int rays;                      /* for a pixel; with `shading` segments */
+    int rays;                      /* from a leaf; without `shading` for a pixel */
+    double mean;                   /* radiosity of all that reflects, W/m^2 */
 };
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,

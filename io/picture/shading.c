@@ -14,14 +14,11 @@
  *
  * Light without that of lamps is smooth, and falls or rises up to the very edge of a
  * surface, beyond the means of all leaves there: it gets ROUNDS corrections and BEYOND
- * times that range. (On eight leaves of a chair, across which the edge of a beam out of a
- * lampshade ran, two of the corners were black without that.) More of them, and leaves
- * that have few rays, would exaggerate differences that are noise, so each deficit d, of
- * a leaf whose radiosity has the standard deviation s, counts 1 - (s/d)^2 times, or not
- * at all: the estimate of a value from one noisy sample (James and Stein, 1961). Leaves
- * that have too much by noise have a larger s than those that have too little, so light
- * would be lost: .6 % of the picture of a furnished room (make cycles). The last
- * correction takes deficits whole: as much light is shown as leaves have.
+ * times that range. More of them, and leaves that have few rays, would exaggerate
+ * differences that are noise, so each deficit d, of a leaf whose radiosity has the
+ * standard deviation s, counts 1 - (s/d)^2 times, or not at all: the estimate of a value
+ * from one noisy sample (James and Stein, 1961). The last correction takes deficits
+ * whole: else light would be lost, .6 % of the picture of a furnished room (make cycles).
  *
  * Where a box stands on the floor, or a picture hangs close to a wall, leaves are covered
  * in part: their rows tell the share that is open (rad/beyond/gather/rows.h). The covered
@@ -34,16 +31,14 @@
  * and falls by much of that over a leaf, in no straight line. Leaves over which it varies
  * by more than the mean of all light, one in two hundred by area, had half of the squared
  * error of the pictures of furnished rooms. They are steep: no value is to be
- * interpolated there. So no reflected light lacks there either: a deficit of values that
- * are not shown would only darken leaves beyond the edge of a lampshade, down to black.
+ * interpolated there, and no reflected light lacks.
  *
  * Between its corners a leaf interpolates linearly. A leaf with T-vertices is divided, as
  * its children would be, into tiles without any; where these have a corner that is no
  * vertex, in the middle of an edge, it shows the mean of the ends. So a T-vertex shows
  * the light around it, and the large leaf takes it up over a tile as large as its small
- * neighbours. (With the mean of the edge's ends, far apart, light was a third off, in a
- * smear above a bookcase.) The result is continuous on every smooth surface, but for
- * T-junctions of the input mesh itself. */
+ * neighbours. The result is continuous on every smooth surface, but for T-junctions of
+ * the input mesh itself. */
 #include "io/picture/shading.h"
 
 #include <math.h>
@@ -148,20 +143,21 @@ struct tile {
     struct rgb value[3]; /* W/m^2 */
 };
 
-static struct tile whole_leaf(const struct shading *shading, int32_t leaf)
+static struct tile whole_leaf(const struct shading *shading, const struct rgb *values,
+                              int32_t leaf)
 {
     struct tile whole;
     for (int k = 0; k < 3; k++) {
         whole.vertex[k] = shading->corners[3 * (int64_t)leaf + k];
-        whole.value[k] = shading->table->values[whole.vertex[k]];
+        whole.value[k] = values[whole.vertex[k]];
     }
     return whole;
 }
 
 /* Makes the tile between the middles of the edges: corner k is opposite to that of the
  * whole. Returns whether one of them is a T-vertex, so that the whole is divided. */
-static bool find_inner(const struct table *table, const struct tile *whole,
-                       struct tile *inner)
+static bool find_inner(const struct table *table, const struct rgb *values,
+                       const struct tile *whole, struct tile *inner)
 {
     bool divided = false;
     for (int k = 0; k < 3; k++) {
@@ -169,7 +165,7 @@ static bool find_inner(const struct table *table, const struct tile *whole,
         int32_t v = vertex_between(table, whole->vertex[a], whole->vertex[b]);
         for (int c = 0; c < BANDS; c++)
             inner->value[k].band[c] =
-                v >= 0 ? table->values[v].band[c]
+                v >= 0 ? values[v].band[c]
                        : 0.5 * (whole->value[a].band[c] + whole->value[b].band[c]);
         inner->vertex[k] = v;
         divided = divided || v >= 0;
@@ -195,7 +191,7 @@ static void add_mean(const struct table *table, const struct tile *tile, double 
                      struct rgb *mean)
 {
     struct tile inner, outer;
-    if (find_inner(table, tile, &inner)) {
+    if (find_inner(table, table->values, tile, &inner)) {
         share *= 0.25;
         for (int k = 0; k < 3; k++) {
             outer = outer_tile(tile, &inner, k);
@@ -309,13 +305,15 @@ static void add_leaf(struct blend *blend, int32_t leaf)
 static void find_division(struct blend *blend, int32_t leaf)
 {
     struct shading *shading = blend->shading;
-    struct tile whole = whole_leaf(shading, leaf), inner;
-    shading->divided[leaf] = find_inner(shading->table, &whole, &inner);
+    const struct rgb *values = shading->table->values;
+    struct tile whole = whole_leaf(shading, values, leaf), inner;
+    shading->divided[leaf] = find_inner(shading->table, values, &whole, &inner);
 }
 
 static bool is_steep(const struct blend *blend, int32_t leaf)
 {
-    struct tile whole = whole_leaf(blend->shading, leaf);
+    struct tile whole =
+        whole_leaf(blend->shading, blend->shading->table->values, leaf);
     double low = HUGE_VAL, high = 0.0;
     for (int k = 0; k < 3; k++) {
         low = fmin(low, rgb_sum(whole.value[k]));
@@ -327,7 +325,8 @@ static bool is_steep(const struct blend *blend, int32_t leaf)
 /* Returns the deficit of the leaf at hand, less its noise. */
 static struct rgb deficit_of(const struct blend *blend, int32_t leaf)
 {
-    struct tile whole = whole_leaf(blend->shading, leaf);
+    struct tile whole =
+        whole_leaf(blend->shading, blend->shading->table->values, leaf);
     struct rgb mean = {{0.0, 0.0, 0.0}};
     double largest = 0.0, share = 1.0, fraction = blend->fraction;
     add_mean(blend->shading->table, &whole, 1.0, &mean);
@@ -423,18 +422,33 @@ static void find_steep(struct blend *blend, int32_t leaf)
         blend->shading->shades[leaf] = SHADE_STEEP;
 }
 
-static void blend_leaves(struct blend *blend)
+/* Finds the values at vertices: of all light, or of light less less[leaf]. */
+static void blend_light(struct blend *blend, const struct rgb *less)
 {
-    const struct forest *forest = blend->shading->forest;
-    int rounds = blend->less ? ROUNDS : 1;
-    blend->steep = forest_mean_reflected(forest);
-    blend->surface = surface_of_roots(forest->scene);
-    for_each_leaf(blend, add_leaf);
-    for_each_leaf(blend, find_division);
-    for (; blend->round <= rounds; blend->round++) {
+    int rounds = less ? ROUNDS : 1;
+    blend->less = less;
+    for (blend->round = 0; blend->round <= rounds; blend->round++) {
         blend->is_last = blend->round == rounds;
         give_what_lacks(blend);
     }
+}
+
+/* The light of lamps is the difference of all light and of that without it. */
+static void blend_leaves(struct blend *blend, const struct rgb *less)
+{
+    struct table *table = blend->shading->table;
+    blend->steep = forest_mean_reflected(blend->shading->forest);
+    blend->surface = surface_of_roots(blend->shading->forest->scene);
+    for_each_leaf(blend, add_leaf);
+    for_each_leaf(blend, find_division);
+    blend_light(blend, NULL);
+    if (less) {
+        blend->shading->lamps = table->values;
+        table->values = alloc_array((size_t)table->capacity, sizeof *table->values);
+        blend_light(blend, less);
+    }
+    for (int64_t v = 0; v < table->count && less; v++)
+        blend->shading->lamps[v] = rgb_sub(blend->shading->lamps[v], table->values[v]);
     alloc_free(blend->surface);
     for_each_leaf(blend, find_steep);
 }
@@ -462,9 +476,9 @@ static struct shading *publish(struct shading *shading)
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
                                const float *error, const float *outside)
 {
-    struct blend blend = {.shading = allocate(forest), .less = less, .error = error,
+    struct blend blend = {.shading = allocate(forest), .error = error,
                           .outside = outside};
-    blend_leaves(&blend);
+    blend_leaves(&blend, less);
     return publish(blend.shading);
 }
 
@@ -482,6 +496,7 @@ void shading_destroy(struct shading *shading)
         return;
     alloc_free(shading->table->positions);
     alloc_free(shading->table->values);
+    alloc_free(shading->lamps);
     alloc_free(shading->table->surfaces);
     alloc_free(shading->table->slots);
     alloc_free(shading->table);
@@ -491,20 +506,25 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading);
 }
 
-struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
-                      int32_t *leaf)
+int32_t shading_leaf_at(const struct shading *shading, int32_t root, double weight[3])
 {
-    const struct forest *forest = shading->forest;
-    double w[3] = {weight[0], weight[1], weight[2]};
+    const struct patch *patches = shading->forest->patches;
     int32_t p = root;
-    while (!patch_is_leaf(&forest->patches[p]))
-        p = forest->patches[p].children + triangle_child_at(w);
-    *leaf = p;
+    while (!patch_is_leaf(&patches[p]))
+        p = patches[p].children + triangle_child_at(weight);
+    return p;
+}
+
+struct rgb shading_at(const struct shading *shading, const struct rgb *values,
+                      int32_t root, const double weight[3])
+{
+    double w[3] = {weight[0], weight[1], weight[2]};
+    int32_t p = shading_leaf_at(shading, root, w);
     if (shading->flat)
-        return shading->values[shading->corners[3 * (int64_t)p]];
-    struct tile tile = whole_leaf(shading, p), inner;
+        return values[shading->corners[3 * (int64_t)p]];
+    struct tile tile = whole_leaf(shading, values, p), inner;
     for (int child = 0; child < 3 && shading->divided[p] &&
-                        find_inner(shading->table, &tile, &inner);) {
+                        find_inner(shading->table, values, &tile, &inner);) {
         child = triangle_child_at(w);
         tile = child < 3 ? outer_tile(&tile, &inner, child) : inner;
     }

@@ -20,6 +20,7 @@ struct shading {
     int32_t *corners;            /* [3 * forest->count] vertex of p, k: [3 p + k] */
     struct vec3 *positions;      /* [vertex_count] scene units */
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
+    struct rgb *lamps;           /* [vertex_count] by lamps, if not in `values`, W/m^2 */
     int64_t vertex_count;
     int64_t own_count;           /* vertices before those of a sky */
     bool *divided;               /* [forest->count] leaf: it has T-vertices */
@@ -40,9 +41,11 @@ struct shading *shading_create(const struct forest *forest, const struct rgb *le
 struct shading *shading_create_flat(const struct forest *forest);
 void shading_destroy(struct shading *shading);
 
-/* Returns the radiosity at the point of a root with these barycentric coordinates,
- * W/m^2. Sets `leaf` to the leaf there. */
-struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
-                      int32_t *leaf);
+/* Returns the leaf at a point of a root. Makes barycentric coordinates the leaf's. */
+int32_t shading_leaf_at(const struct shading *shading, int32_t root, double weight[3]);
+
+/* Interpolates these values at vertices there: shading->values, or shading->lamps. */
+struct rgb shading_at(const struct shading *shading, const struct rgb *values,
+                      int32_t root, const double weight[3]);
 
 #endif

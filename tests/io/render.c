@@ -62,8 +62,8 @@ static struct solution half_shadow(int rays)
 }
 
 /* The shadow has its edges where they are, although no leaf knows of them. Of
- * 32 points in squares of their own the half-shadow's edge may cut some 6, of 512 some
- * 25: segments are an eighth of the rays. */
+ * 16 points in squares of their own the half-shadow's edge may cut some 4, of 1,024 some
+ * 32: segments are a quarter of the rays at least. */
 static void test_shadow(bool all, int rays, double allowed)
 {
     struct solution s = half_shadow(rays);
@@ -86,21 +86,39 @@ static void test_shadow(bool all, int rays, double allowed)
     solution_free(&s);
 }
 
-/* Where .35 of the lamp is hidden, .58 of one of its triangles and .12 of the other, 256
- * segments to each are as noisy as sqrt(.25 (.58 .42 + .12 .88) / 256) = .0185 of its
- * light, or .0285 of what is seen; of three bands together .0165. So (1.65)^2 = 2.7 times
- * as many are wanted for a noise of 1 %: three times, and not four. */
+/* Segments that a pixel at a point of the floor fires. */
+static int64_t segments_at(struct solution *s, const struct shading *shading,
+                           struct vec3 x)
+{
+    const struct gather_counts *counts = &s->solver->beyond->answer->gather->counts;
+    int64_t before = counts->segments;
+    shown(s, shading, 0, x);
+    return counts->segments - before;
+}
+
+/* A pixel that is sure has 4 segments. Where some of these are blocked, as .35 of the
+ * lamp is, or none, but the mesh of two leaves has another light, it has a quarter to a
+ * half of the rays from a leaf besides. */
 static void test_noise(void)
 {
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-0.01, -0.01, 0), point(0.02, 0, 0), point(0, 0.02, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    struct solution even = solve_soup(&soup, "--max-level 0 --final-gather 4096");
     struct solution s = half_shadow(4096);
-    struct shading *shading = shade_rest(&s);
-    const struct gather_counts *counts = &s.solver->beyond->answer->gather->counts;
-    int64_t before = counts->segments;
-    shown(&s, shading, 0, point(0.43, 0.015, 0.0));
-    int64_t fired = counts->segments - before;
-    tap_ok(fired == (1 + 3) * 512, "a noisy pixel gets the segments that it wants: %lld",
-           (long long)fired);
+    struct shading *of_even = shade_rest(&even), *shading = shade_rest(&s);
+    int64_t sure = segments_at(&even, of_even, point(0.002, 0.005, 0.0));
+    int64_t noisy = segments_at(&s, shading, point(0.43, 0.015, 0.0));
+    int64_t lit = segments_at(&s, shading, point(0.7, 0.1, 0.0));
+    tap_ok(sure == 4, "a pixel that is sure has %lld segments", (long long)sure);
+    tap_ok(noisy >= 4 + 1024 && noisy <= 4 + 2048, "a noisy one has %lld",
+           (long long)noisy);
+    tap_ok(lit == 4 + 1024, "one far from the mesh has %lld", (long long)lit);
+    shading_destroy(of_even);
     shading_destroy(shading);
+    solution_free(&even);
     solution_free(&s);
 }
 
@@ -150,7 +168,7 @@ static void test_strip(double width, bool is_narrow)
     for (int i = 1; i < 20; i++)
         worst = fmax(worst,
                      fabs(shown(&s, shading, floor, point(0.05 * i, 0.02, 0)) - 1.0));
-    shading_at(shading, floor, (double[]){1.0, 0.0, 0.0}, &leaf);
+    leaf = shading_leaf_at(shading, floor, (double[]){1.0, 0.0, 0.0});
     bool covered = shading->shades[leaf] == SHADE_COVERED;
     tap_ok(worst > 0.0 && worst <= (is_narrow ? 0.02 : 0.015) && covered == is_narrow,
            "a strip of floor beside a box is even within %.1e", worst);

@@ -466,7 +466,7 @@ static void test_large_leaf_counts(void)
         if (stage.forest->patches[p].id.root == 1)
             stage.forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
     shade_stage(&stage, false);
-    double shown = shading_at(stage.shading, 0, corner, &(int32_t){0}).band[0];
+    double shown = shading_at(stage.shading, stage.shading->values, 0, corner).band[0];
     tap_ok(shown < 0.2,
            "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f",
            shown);
