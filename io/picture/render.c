@@ -34,8 +34,7 @@
 
 enum {
     SEGMENTS = 4,  /* to lamps, for a pixel, at first */
-    LEAST = 4,     /* --final-gather over the fewest in a pixel that is not sure */
-    MOST = 2,      /* the same over the most */
+    LEAST = 2,     /* --final-gather over the fewest in a pixel that is not sure */
     WHOLE = 128,   /* rays and segments for a pixel in which things cover the leaf */
     STEEP = 512,   /* the same on a steep leaf */
     MORE = 4       /* most factor on these two */
@@ -43,8 +42,8 @@ enum {
 
 /* A pixel is not sure if its light has this deviation by chance, or is so far from that
  * of the mesh, relative to the geometric mean of it and of what all surfaces reflect: a
- * display shows differences by the root of light. .03 are about two codes of 255. */
-static const double NOISE = 0.03, APART = 0.01; /* 1 */
+ * display shows differences by the root of light. .015 are about one code of 255. */
+static const double NOISE = 0.015, APART = 0.01; /* 1 */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
                               struct final_gather *gather)
@@ -239,7 +238,7 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     double square = rgb_sum(pixel->sum) * count * renderer->mean;
     double noise = pixel->variance / (NOISE * NOISE * square);
     double apart = rgb_sum(pixel->apart) / APART;
-    int all = renderer->rays / SEGMENTS, most = all / MOST, least = all / LEAST;
+    int most = renderer->rays / SEGMENTS, least = most / LEAST;
     if (!(noise > 1.0) && apart * apart <= square)
         return 1;
     return noise < least ? least : noise < most ? (int)noise : most;
