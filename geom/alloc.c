@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/error.h"
+
 static int64_t balance;
 static void (*failure_handler)(size_t bytes);
 
@@ -16,7 +18,8 @@ void alloc_fail(size_t bytes)
 {
     if (failure_handler)
         failure_handler(bytes);
-    fprintf(stderr, "phr: out of memory (%zu bytes more were needed)\n", bytes);
+    fprintf(stderr, "%s: out of memory (%zu bytes more were needed)\n", error_program,
+            bytes);
     exit(1);
 }
 

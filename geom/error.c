@@ -4,6 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+const char *error_program = "phr";
+
 bool error_set(struct error *error, int code, const char *format, ...)
 {
     if (error->code != EXIT_DONE)

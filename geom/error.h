@@ -2,7 +2,7 @@
  *
  * A function that can fail so takes a `struct error *`, fills it and returns false.
  * Nothing is printed where the error is found: the ranks first agree on it, then rank 0
- * prints it. */
+ * prints it, behind the name of the program. */
 #ifndef GEOM_ERROR_H
 #define GEOM_ERROR_H
 
@@ -19,6 +19,9 @@ struct error {
     int32_t code;   /* EXIT_DONE while nothing is wrong */
     char text[508]; /* one line, without "phr: " and without the newline */
 };
+
+/* The name of the program, "phr" unless its main() says otherwise. */
+extern const char *error_program;
 
 /* Fills `error` from a printf format unless it holds an error already (the first one
  * counts); control characters of the text (which may quote a file) become '?'. Returns

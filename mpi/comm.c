@@ -51,7 +51,8 @@ static struct comm_counts counted;
 
 static void out_of_memory(size_t bytes)
 {
-    fprintf(stderr, "phr: out of memory (%zu bytes more were needed)\n", bytes);
+    fprintf(stderr, "%s: out of memory (%zu bytes more were needed)\n", error_program,
+            bytes);
     MPI_Abort(failing_comm, EXIT_FAILED);
 }
 
@@ -191,9 +192,9 @@ int comm_count(const struct comm *comm, int64_t count)
 {
     if (count > INT_MAX) {
         fprintf(stderr,
-                "phr: a message of %lld items is more than MPI can count; a larger "
+                "%s: a message of %lld items is more than MPI can count; a larger "
                 "epsilon makes it smaller\n",
-                (long long)count);
+                error_program, (long long)count);
         MPI_Abort(comm->handle, EXIT_FAILED);
     }
     return (int)count;

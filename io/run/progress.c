@@ -21,6 +21,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "geom/error.h"
+
 static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 
 /* The time left is shown from this part of a stage and this many seconds on. */
@@ -66,7 +68,7 @@ int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress
         print_duration(duration, sizeof duration, seconds * (1.0 - done) / done);
         snprintf(left, sizeof left, ", about %s left", duration);
     }
-    int length = snprintf(text, PROGRESS_WIDTH + 1, "phr: %s%s%s, %d %%%s",
+    int length = snprintf(text, PROGRESS_WIDTH + 1, "%s: %s%s%s, %d %%%s", error_program,
                           progress->phase, level, links, (int)(100.0 * done), left);
     return length < PROGRESS_WIDTH ? length : PROGRESS_WIDTH;
 }
