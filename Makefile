@@ -84,9 +84,9 @@ endif
 
 # All sources of these folders but the programs.
 OCTREE = $(wildcard octree/*.c)
-PROGRAMS = tools/imgdiff tools/pathtracer tools/id
+PROGRAMS = tools/imgdiff tools/pathtracer tools/id tools/viewfactors/main
 FOLDERS = geom rad rad/beyond rad/beyond/gather mpi mpi/beyond io/scene io/run \
-          io/picture tools lib
+          io/picture tools tools/viewfactors lib
 SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
@@ -113,7 +113,7 @@ FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
-all: $(PHR) $(IMGDIFF) build/id
+all: $(PHR) $(IMGDIFF) build/viewfactors build/id
 
 # Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr
 # again.
@@ -126,14 +126,19 @@ $(IMGDIFF): $(BUILD)/imgdiff FORCE
 	@mkdir -p $(@D)
 	@cmp -s $(BUILD)/imgdiff $@ || cp $(BUILD)/imgdiff $@
 
-build/id: $(BUILD)/id FORCE
-	@cmp -s $(BUILD)/id $@ || cp $(BUILD)/id $@
+build/id build/viewfactors build/pathtracer: build/%: $(BUILD)/% FORCE
+	@mkdir -p build
+	@cmp -s $< $@ || cp $< $@
 
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
 
-$(BUILD)/imgdiff $(BUILD)/id: $(BUILD)/%: $(BUILD)/tools/%.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
+$(BUILD)/imgdiff $(BUILD)/id $(BUILD)/pathtracer: $(BUILD)/%: $(BUILD)/tools/%.o \
+    $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+$(BUILD)/viewfactors: $(BUILD)/tools/viewfactors/main.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
@@ -146,12 +151,7 @@ $(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
-
-pathtracer: $(BUILD)/pathtracer
-	@mkdir -p build
-	@cmp -s $(BUILD)/pathtracer build/pathtracer || cp $(BUILD)/pathtracer build/pathtracer
+pathtracer: build/pathtracer
 
 $(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o \
     $(BUILD)/libphr.a
@@ -241,7 +241,7 @@ build/course/%: docs/course/%.c $(BUILD)/libphr.a
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
 # Half a minute on two cores, from nothing.
-course: $(PHR) $(IMGDIFF) $(COURSE) build/room
+course: $(PHR) $(IMGDIFF) build/viewfactors $(COURSE) build/room
 	MPIEXEC="$(MPIEXEC)" CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/run.sh
 	MPIEXEC="$(MPIEXEC)" sh docs/course/figures.sh
 
@@ -258,7 +258,8 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
 	mv build/answers.csv scenes/answers.csv
 
-check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(BUILD)/direct $(COURSE)
+check: $(PHR) $(IMGDIFF) build/viewfactors pathtracer tests build/room $(BUILD)/direct \
+    $(COURSE)
 	cp scenes/room.mtl $(BUILD)/tests
 	build/room 1000 1 >$(BUILD)/tests/room.obj
 	$(BUILD)/direct scenes/shadow.obj $(BUILD)/tests/shadow.ref 10000
@@ -300,11 +301,14 @@ fuzz:
 $(BUILD)/fuzz-%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 
-install: $(PHR) $(IMGDIFF)
+INSTALLED = phr imgdiff viewfactors
+
+install: $(PHR) $(BUILD)/imgdiff $(BUILD)/viewfactors
 	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1 $(DESTDIR)$(docdir)
 	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
-	$(INSTALL) -m 755 $(IMGDIFF) $(DESTDIR)$(bindir)/imgdiff
-	$(INSTALL) -m 644 phr.1 tools/imgdiff.1 $(DESTDIR)$(mandir)/man1
+	$(INSTALL) -m 755 $(BUILD)/imgdiff $(BUILD)/viewfactors $(DESTDIR)$(bindir)
+	$(INSTALL) -m 644 phr.1 tools/imgdiff.1 tools/viewfactors/viewfactors.1 \
+	    $(DESTDIR)$(mandir)/man1
 	$(INSTALL) -m 644 LICENSE $(DESTDIR)$(docdir)
 
 # One object, of whose names only those of lib/phr.h stay global.
@@ -320,8 +324,8 @@ install-lib: $(BUILD)/lib/libphr.a
 	$(INSTALL) -m 644 lib/phr.h $(DESTDIR)$(includedir)
 
 uninstall:
-	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(bindir)/imgdiff
-	rm -f $(DESTDIR)$(mandir)/man1/phr.1 $(DESTDIR)$(mandir)/man1/imgdiff.1
+	rm -f $(INSTALLED:%=$(DESTDIR)$(bindir)/%)
+	rm -f $(INSTALLED:%=$(DESTDIR)$(mandir)/man1/%.1)
 	rm -f $(DESTDIR)$(docdir)/LICENSE
 	rm -f $(DESTDIR)$(libdir)/libphr.a $(DESTDIR)$(includedir)/phr.h
 

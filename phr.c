@@ -8,42 +8,18 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-#include "geom/alloc.h"
-#include "geom/hash.h"
 #include "io/run/machine.h"
-#include "mpi/broadcast.h"
 #include "mpi/memory.h"
-#include "geom/signals.h"
 #include "tools/balance.h"
 #include "tools/dump.h"
-#include "tools/factors.h"
 #include "tools/idle.h"
 #include "tools/input.h"
 #include "tools/report.h"
 #include "tools/results.h"
 #include "tools/stored.h"
-#include "tools/validate.h"
 
 /* --- parts of the steps --- */
-
-/* Step 1: rank 0 reads, all agree on errors, all receive the scene. */
-static bool broadcast_scene(struct run *run)
-{
-    size_t cameras = (size_t)run_camera_count(run);
-    run->cameras = alloc_array(cameras, sizeof *run->cameras);
-    if (run->comm.rank == 0)
-        input_read(run);
-    if (!run_agree(run))
-        return false;
-    run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
-    comm_broadcast(&run->comm, run->cameras, cameras * sizeof *run->cameras);
-    if (run->block.shared && run->options.verbose)
-        run_say(run, "one copy of scene and octree for %d ranks, %.1f MB",
-                run->block.node.size, 1e-6 * (double)run->block.bytes);
-    return run_goes_on(run);
-}
 
 /* True if the paper's method alone is asked for: nothing of beyond/ is called. */
 static bool is_paper(const struct criterion *criterion)
@@ -161,7 +137,7 @@ static enum finish finish_light(struct run *run)
 bool compute_light(struct run *run)
 {
     enum finish finish;
-    if (!run->octree && !broadcast_scene(run))   /* 1: all get the scene */
+    if (!run->octree && !input_broadcast(run))   /* 1: all get the scene */
         return false;
     if (stored_light(run))                       /* the scene has its light with it */
         return true;
@@ -195,57 +171,29 @@ bool compute_light(struct run *run)
 
 /* --- the program --- */
 
-/* Collective. True if all ranks have the arguments of rank 0: they decide alike from here
- * on. */
-static bool check_arguments(struct run *run, int argc, char **argv)
+static void print_words(const struct options *options)
 {
-    uint64_t own = HASH_START, first;
-    for (int i = 1; i < argc; i++)
-        own = hash_bytes(own, argv[i], strlen(argv[i]) + 1);
-    first = own;
-    comm_broadcast(&run->comm, &first, sizeof first);
-    if (own != first)
-        error_set(&run->error, EXIT_USAGE, "the ranks have different arguments");
-    return comm_agree(&run->comm, &run->error);
+    if (options->help)
+        options_print_help(options->help_on, stdout);
+    else
+        printf("phr %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
 }
 
 int main(int argc, char **argv)
 {
     struct run run = {0};
-    comm_start(&run.comm, &argc, &argv);
-    run.start = comm_seconds();
-    signals_catch();
-    bool parsed = check_arguments(&run, argc, argv) &&
-                  options_parse(&run.options, argc, argv, &run.error);
-    if (run.comm.rank == 0 && !run.options.quiet)
-        progress_view_open(&run.progress, comm_seconds);
-    bool words = run.options.help || run.options.version;
-    if (parsed && !words)
+    bool parsed = run_start(&run, &argc, &argv) && run_parse(&run, argc, argv);
+    if (parsed && (run.options.help || run.options.version)) {
+        if (run.comm.rank == 0)
+            print_words(&run.options);
+    } else if (parsed) {
         idle_warn(&run);
-    if (parsed && words) {
-        if (run.comm.rank == 0 && run.options.help)
-            options_print_help(run.options.help_on, stdout);
-        else if (run.comm.rank == 0)
-            printf("phr %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
-    } else if (parsed && run.options.validate) {
-        if (run.comm.rank == 0 && !validate_print(stdout))
-            error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
-    } else if (parsed && run.options.form_factors) {
-        if (broadcast_scene(&run))
-            factors_tabulate(&run);
-    } else if (parsed && compute_light(&run)) {
-        if (!run.stored && (!run.options.quiet || run.options.stats))
-            solver_measure_row_sums(run.solver, &run.stats);
-        if (balance_is_absurd(&run) || (results_show(&run) && dump_print(&run)))
-            report_summary(&run);
+        if (compute_light(&run)) {
+            if (!run.stored && (!run.options.quiet || run.options.stats))
+                solver_measure_row_sums(run.solver, &run.stats);
+            if (balance_is_absurd(&run) || (results_show(&run) && dump_print(&run)))
+                report_summary(&run);
+        }
     }
-    run_end(&run);
-    run_free(&run);
-    comm_stop(&run.comm);
-    if (alloc_balance() != 0) {
-        fprintf(stderr, "phr: BUG: %lld blocks of memory were not freed\n",
-                (long long)alloc_balance());
-        return EXIT_FAILED;
-    }
-    return run.error.code;
+    return run_end(&run);
 }

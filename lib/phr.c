@@ -43,8 +43,7 @@ static bool read_options(struct run *run, const char *const *options)
 {
     static const char *const FILES[] = {
         "-o", "--view", "--stats", "--save-links", "--load-links",
-        "--checkpoint", "--resume", "--dump", "--form-factors", "--validate",
-        "--help", "--version", NULL};
+        "--checkpoint", "--resume", "--dump", "--help", "--version", NULL};
     int count = 0;
     while (options && options[count])
         count++;

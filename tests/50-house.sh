@@ -20,8 +20,10 @@ check "io/run/ includes neither mpi/, io/picture/ nor tools/" \
     forbidden io/run 'mpi|io/picture|tools'
 check "io/picture/ includes neither mpi/ nor tools/" forbidden io/picture 'mpi|tools'
 check "tools/ does not include tests/" forbidden tools 'tests'
+check "nor does tools/viewfactors/" forbidden tools/viewfactors 'tests'
 
 house="geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*/*.[ch] tools/*.[ch]"
+house="$house tools/*/*.[ch]"
 mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c $house)
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
@@ -44,7 +46,8 @@ done
 check "each folder's README has every file:$missing" [ -z "$missing" ]
 
 gone=
-for folder in geom octree rad rad/beyond mpi mpi/beyond io/* tools lib; do
+for folder in geom octree rad rad/beyond mpi mpi/beyond io/* tools lib \
+    tools/viewfactors; do
     for name in $(sed -n 's/^| `\([^`]*\)`.*/\1/p' "$folder/README.md"); do
         ls "$folder/$name".[ch] >/dev/null 2>&1 || gone="$gone $folder/$name"
     done
@@ -84,11 +87,14 @@ $MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr \
     >"$work/install.log" 2>&1
 check "install: the program runs" \
     [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]
-check "install: the man page is there" [ -s "$work/root/opt/phr/share/man/man1/phr.1" ]
 check "install: imgdiff runs" \
     [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.3" ]
-check "install: its man page is there" \
-    [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
+check "install: viewfactors runs" [ "$("$work/root/opt/phr/bin/viewfactors" --version)" \
+    = "$(./phr --version | sed s/phr/viewfactors/)" ]
+for program in phr imgdiff viewfactors; do
+    check "install: the man page of $program is there" \
+        [ -s "$work/root/opt/phr/share/man/man1/$program.1" ]
+done
 check "install: the licence is there" \
     cmp LICENSE "$work/root/opt/phr/share/doc/phr/LICENSE"
 check "CITATION.cff has this version" grep -q \

@@ -65,11 +65,11 @@ judge source_lines "$(source_files | lines_of)"
 judge upstairs_lines "$(find rad/beyond mpi/beyond -name '*.[ch]' | lines_of)"
 judge test_lines "$(test_files | lines_of)"
 judge long_lines "$( (source_files; test_files
-    ls Makefile compute.h lib/*.[ch] tools/*.[ch] tools/*.sh tools/*.awk
+    ls Makefile compute.h lib/*.[ch] tools/*.[ch] tools/*/*.[ch] tools/*.sh tools/*.awk
     ls scenes/*.c scenes/*.sh
     ls docs/course/*.c docs/course/*.sh docs/course/*.awk docs/course/*/*.[ch]) |
     xargs cat | grep -cE '^.{91}')"
-awk -f tests/storeys.awk $(source_files) tools/*.[ch] >"$work/figures"
+awk -f tests/storeys.awk $(source_files) tools/*.[ch] tools/*/*.[ch] >"$work/figures"
 while read -r name figure details; do
     judge "$name" "$figure" "$details"
 done <"$work/figures"

@@ -76,14 +76,9 @@ for ranks in 1 4; do
     check "without an output, on $ranks" \
         idle $ranks "--size, --exposure, --final-gather pixels" $box --size 9x9 \
         --exposure 2 --final-gather 16,pixels
-    check "with --form-factors, on $ranks" idle $ranks \
-        "--samples, --solver, --ke, --memory" scenes/squares.obj --form-factors \
-        --samples 2 --solver cg --ke radiance --memory 1G --epsilon 1
 done
 check "without 8-bit colours" idle 1 "--exposure" $box --size 9x9 --exposure 2 \
     -o "$work/idle.pfm"
-check "with --validate" idle 1 "--epsilon, -o, scenes/cornell.obj" scenes/cornell.obj \
-    --validate --epsilon 1 -o "$mesh"
 check "without predictions" idle 1 "--alpha" scenes/squares.obj --alpha 0.25
 check "with them" idle 1 "" scenes/squares.obj --alpha 0.25 --paper
 check "or where they are told" idle 1 "" scenes/squares.obj --alpha 0.25 \

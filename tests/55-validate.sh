@@ -1,9 +1,9 @@
-# phr --validate: all form factors are as good as stated, the table has what it should
-# have, and it is the same with any number of ranks.
+# viewfactors --validate: all form factors are as good as stated, the table has what it
+# should have, and it is the same with any number of ranks.
 
 . tests/tap.sh
 
-"$PHR" --validate >"$work/table" 2>"$work/errors"
+"$BUILD/viewfactors" --validate >"$work/table" 2>"$work/errors"
 check "--validate succeeds" [ $? -eq 0 ]
 check "silently" [ ! -s "$work/errors" ]
 check "and says so in its last line" [ "$(tail -n 1 "$work/table")" = "all as stated" ]
@@ -19,14 +19,8 @@ line='^P01 opposed unit squares, distance 1 +0\.199825 +0\.707 +'
 line=$line'\(\+15\.89 %\) +\(\+2\.08 %\) +-3e-04'
 check "a line to be trusted" grep -qE "$line" "$work/table"
 
-# No scene is read.
-"$PHR" --validate "$work/absent.obj" >"$work/again" 2>"$work/log"
-check "the same table with a scene" cmp -s "$work/table" "$work/again"
-check "and a word that no use is made of it" \
-    grep -q "no use is made of .*absent.obj" "$work/log"
-
 # Each rank writes into one file: only one of them may print.
-$MPIEXEC -n 3 "$PHR" --validate >"$work/three" 2>&1
+$MPIEXEC -n 3 "$BUILD/viewfactors" --validate >"$work/three" 2>&1
 check "3 ranks succeed" [ $? -eq 0 ]
 check "and print one table" cmp -s "$work/table" "$work/three"
 

@@ -1,4 +1,4 @@
-# phr --form-factors: exact without blockers, within 0.5 % with them and within 0.1 % if
+# viewfactors: exact without blockers, within 0.5 % with them and within 0.1 % if
 # asked for; the error is what it says, or smaller; tables have what they should have, and
 # are the same on any number of ranks and without MPI, whatever the unit of length and the
 # place of the scene.
@@ -9,7 +9,7 @@
 table() {
     table_name=$1
     shift
-    "$PHR" --quiet --form-factors "$work/$table_name.obj" "$@" >"$work/$table_name.csv"
+    "$BUILD/viewfactors" --quiet "$work/$table_name.obj" "$@" >"$work/$table_name.csv"
 }
 
 # value FILE FROM TO: F.
@@ -53,7 +53,7 @@ objs() {
 
 # --- pairs without blockers: nothing is in doubt, so that epsilon does not matter ---
 
-# The rows of tools/cases.c as a CSV file: id, no text, the polygons, F.
+# The rows of tools/viewfactors/cases.c as a CSV file: id, no text, the polygons, F.
 awk 'function flush(part, field, at) {
         if (row == "")
             return
@@ -71,7 +71,8 @@ awk 'function flush(part, field, at) {
     BEGIN { print "id,,polygons,F" }
     /^    {"[A-Z][0-9]/ { flush(); row = "" }
     /^};/ { flush(); exit }
-    /^ *{"[A-Z][0-9]/ || row != "" { row = row $0 }' tools/cases.c >"$work/cases.csv"
+    /^ *{"[A-Z][0-9]/ || row != "" { row = row $0 }' tools/viewfactors/cases.c \
+    >"$work/cases.csv"
 objs "$work/cases.csv" 0 >"$work/plain"
 check "81 pairs" [ "$(wc -l <"$work/plain")" -eq 81 ]
 while read -r id exact; do
@@ -99,7 +100,7 @@ done <"$work/cases"
 claimed() {
     claimed_name=$1
     shift
-    $MPIEXEC -n 1 "$PHR" --form-factors "$work/$claimed_name.obj" "$@" </dev/null \
+    $MPIEXEC -n 1 "$BUILD/viewfactors" "$work/$claimed_name.obj" "$@" </dev/null \
         >"$work/$claimed_name.csv" 2>"$work/log"
     claim=$(sed -n 's/.*largest error of F: //p' "$work/log")
 }
@@ -374,9 +375,9 @@ check "a blocked pair with --two-sided" near "$(value OB1 p1 p2)" 0.074934335887
 
 cp scenes/cornell.obj scenes/cornell.mtl "$work"
 for scene in cornell blocked V7; do
-    "$PHR" --quiet --form-factors "$work/$scene.obj" --accuracy 1e-3 >"$work/alone.csv"
+    "$BUILD/viewfactors" --quiet "$work/$scene.obj" --accuracy 1e-3 >"$work/alone.csv"
     for ranks in 2 3 4 7; do
-        $MPIEXEC -n $ranks "$PHR" --quiet --form-factors "$work/$scene.obj" \
+        $MPIEXEC -n $ranks "$BUILD/viewfactors" --quiet "$work/$scene.obj" \
             --accuracy 1e-3 \
             >"$work/ranks.csv" 2>"$work/errors"
         check "$scene on $ranks ranks" cmp "$work/alone.csv" "$work/ranks.csv"
@@ -391,10 +392,10 @@ done
 refused() {
     text=$1
     shift
-    timeout 5 "$PHR" --form-factors "$@" >"$work/out" 2>"$work/errors"
+    timeout 5 "$BUILD/viewfactors" "$@" >"$work/out" 2>"$work/errors"
     [ $? -eq 2 ] && [ ! -s "$work/out" ] && [ "$(wc -l <"$work/errors")" -eq 1 ] &&
         case $(cat "$work/errors") in
-        "phr: $text"*) ;;
+        "viewfactors: $text"*) ;;
         *) cat "$work/errors"; false ;;
         esac
 }
@@ -405,12 +406,30 @@ awk 'BEGIN { print "v 0 0 0\nv 1 0 0"; for (i = 0; i < 8193; i++)
 check "no scene" refused "no scene given"
 check "a scene that is not there" \
     refused "$work/absent.obj: cannot read" "$work/absent.obj"
-check "an output" refused "--form-factors and -o" "$work/box.obj" -o "$work/box.ppm"
-check "a view" \
-    refused "--form-factors and --view" "$work/box.obj" --view scenes/cornell.view
-check "--stats" \
-    refused "--form-factors and --stats" "$work/box.obj" --stats "$work/box.json"
+for option in "-o a.ppm" "--stats a.json" "--samples 2" "--solver cg" \
+    "--sky 1"; do
+    check "${option% *}" refused "unknown option ${option% *};" "$work/box.obj" $option
+done
+check "words behind --validate" refused "--validate is" --validate "$work/box.obj"
 check "too many groups" \
     refused "$work/many.obj: 8193 groups are more than 8192" "$work/many.obj"
+
+# --- the words ---
+
+"$BUILD/viewfactors" --help >"$work/help"
+check "--help fits a screen" [ "$(wc -l <"$work/help")" -le 24 ]
+missing=$(grep -oE '(^|[^a-z-])--[a-z-]+' "$work/help" | grep -oE '\-\-[a-z-]+' |
+    while read -r option; do
+        sed 's/\\-/-/g' tools/viewfactors/viewfactors.1 | grep -q -e "$option" ||
+            echo "$option"; done)
+check "the man page has every option: $missing" [ -z "$missing" ]
+version=$("$PHR" --version | sed s/phr/viewfactors/)
+check "--version" [ "$("$BUILD/viewfactors" --version)" = "$version" ]
+for option in --validate --form-factors; do
+    said=$("$PHR" $option "$work/box.obj" 2>&1)
+    check "phr $option says where it went: $said" \
+        [ $? -eq 2 -a \
+        "${said% *}" = "phr: $option is a program of its own now: viewfactors" ]
+done
 
 tap_done

@@ -10,12 +10,12 @@ counts="checksum links patches leaves passes iterations rays node_tests triangle
 quiet="--quiet --size 40x40"
 fineness="--epsilon 1e-3 --final-gather 32"
 
-# build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has
-# warnings.
+# build NAME ARGUMENTS...: another phr as $work/NAME/phr, and viewfactors beside it; fails
+# with the log if it has warnings.
 build() {
     name=$1
     shift
-    if ! $MAKE BUILD="$work/$name" PHR="$work/$name/phr.out" "$@" "$work/$name/phr" \
+    if ! $MAKE BUILD="$work/$name" "$@" "$work/$name/phr" "$work/$name/viewfactors" \
         >"$work/$name.log" 2>&1 || grep -q 'warning:' "$work/$name.log"; then
         cat "$work/$name.log"
         return 1
@@ -27,7 +27,7 @@ build() {
 reuse() {
     cp -Rp "$work/serial" "$work/$1"
     find "$work/$1" -name '*.d' -exec grep -l "$2" {} + | sed 's/d$/o/' | xargs rm -f
-    rm -f "$work/$1/phr" "$work/$1/phr.out" "$work/$1/libphr.a"
+    rm -f "$work/$1/phr" "$work/$1/viewfactors" "$work/$1/libphr.a"
 }
 
 # produce DIRECTORY COMMAND...: the outputs and the stats of a run.
@@ -40,11 +40,11 @@ produce() {
         -o "$directory/a.vtk" --stats "$directory/s.json"
 }
 
-# produce_and_validate DIRECTORY PROGRAM: those of the Cornell box, and the table of
+# produce_and_validate BUILD: those of the Cornell box, and the table of viewfactors
 # --validate, which shows the last bits of the exact form factors.
 produce_and_validate() {
-    produce "$1" "$2" $cornell
-    "$2" --validate >"$work/$1/table"
+    produce "$1" "$work/$1/phr" $cornell
+    "$work/$1/viewfactors" --validate >"$work/$1/table"
 }
 
 # same A B: equal files and equal counts.
@@ -78,13 +78,13 @@ two_triangles # more ranks than roots
 check "phr compiles without MPI, without warnings, hardly optimised, with plain loops" \
     build serial SERIAL=1 CFLAGS=-O1 CPPFLAGS=-DPHR_PLAIN_LANES
 reuse brute octree/build.c
-produce_and_validate serial "$work/serial/phr"
+produce_and_validate serial
 for ranks in 1 2 3 4 7 16; do
     produce ranks-$ranks $MPIEXEC -n $ranks "$BUILD/phr" $cornell
     check "Cornell box: $ranks ranks give the bytes of the serial build" \
         same ranks-$ranks serial
 done
-"$BUILD/phr" --validate >"$work/ranks-1/table"
+"$BUILD/viewfactors" --validate >"$work/ranks-1/table"
 check "and the exact form factors to the last bit" same_table ranks-1 serial
 
 # By counts. Dealt once, by predicted work, 2.8 %. In smaller runs one leaf is more.
@@ -239,7 +239,7 @@ fi
 # compiler COMMAND FLAGS: gives the same bytes as the build without MPI.
 compiler() {
     check "$1 $2 builds without warnings" build other SERIAL=1 CC="$1" CFLAGS="$2"
-    produce_and_validate other "$work/other/phr"
+    produce_and_validate other
     check "$1 $2 gives the same bytes" same_table other serial
     rm -rf "$work/other"
 }
@@ -255,12 +255,11 @@ fi
 
 # The ray caster by brute force, linked in place of the octree. It counts no tests.
 check "brute force builds without warnings" build brute SERIAL=1 OCTREE= BRUTE=brute
-produce_and_validate brute "$work/brute/phr"
+produce_and_validate brute
 counts="checksum links patches leaves passes iterations rays"
 check "brute force gives the same bytes" same_table brute serial
 for build in "$work/brute" "$work/serial" "$BUILD"; do
-    "$build/phr" scenes/cornell.obj --quiet --form-factors \
-        >"$work/$(basename "$build").csv"
+    "$build/viewfactors" scenes/cornell.obj --quiet >"$work/$(basename "$build").csv"
 done
 check "and the same form factors" cmp "$work/brute.csv" "$work/serial.csv"
 check "which the MPI build has, too" \
@@ -270,8 +269,7 @@ check "which the MPI build has, too" \
 (
     $MAKE SERIAL=1 BUILD="$work/serial" PHR="$work/phr-last" "$work/phr-last"
     unset BUILD
-    $MAKE PHR="$work/phr-last" IMGDIFF="$work/imgdiff-last" install \
-        DESTDIR="$work/last" prefix=
+    $MAKE PHR="$work/phr-last" install DESTDIR="$work/last" prefix=
 ) >"$work/last.log" 2>&1
 check "the build without MPI is installed as it is" \
     cmp "$work/serial/phr" "$work/last/bin/phr"

@@ -87,13 +87,13 @@ for ranks in 1 4; do
     run $ranks "$work/behind.obj" --two-sided-lamps
     check "and gets no twins more, on $ranks" is_as none
 done
-./phr "$work/twice.obj" --form-factors --epsilon 1e-2 --quiet >"$work/twice.csv"
-./phr scenes/cornell.obj --form-factors --epsilon 1e-2 --quiet >"$work/once.csv"
+"$BUILD/viewfactors" "$work/twice.obj" --quiet >"$work/twice.csv"
+"$BUILD/viewfactors" scenes/cornell.obj --quiet >"$work/once.csv"
 check "form factors of doubles are those of one" cmp "$work/twice.csv" "$work/once.csv"
 
 # A quad with a corner twice is cut into a triangle and one without an area.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 0\nf 1 2 3 4\n' >"$work/corner.obj"
-"$PHR" "$work/corner.obj" --form-factors >"$work/corner.csv" 2>"$work/log"
+"$BUILD/viewfactors" "$work/corner.obj" >"$work/corner.csv" 2>"$work/log"
 check "a quad with a corner twice is a triangle" grep -q ',0.5,0$' "$work/corner.csv"
 check "and no double" [ "$(grep -c twice "$work/log")" -eq 0 ]
 # faces FILE: the line of a mesh that counts its faces.

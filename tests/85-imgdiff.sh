@@ -187,10 +187,10 @@ head -c 3000 "$work/fine.ply" >"$work/cut.ply"
 ends 2 "a solution cut off" "$work/cut.ply" "$work/fine.ply"
 
 area() {
-    $MPIEXEC -n 2 "$PHR" --quiet --form-factors --max-level 0 --epsilon 1 "$1" |
+    $MPIEXEC -n 2 "$BUILD/viewfactors" --quiet --max-level 0 --epsilon 1 "$1" |
         awk -F, '$2 == "*" { s += $3 } END { print s }'
 }
-check "a mesh is a scene for --form-factors, of the same area" \
+check "a mesh is a scene for viewfactors, of the same area" \
     holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
 
 # --- no errors ---

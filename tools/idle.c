@@ -1,6 +1,6 @@
-/* Options that do nothing in the chosen mode. A list names the options that one purpose
- * alone makes use of; the options that bound a computation are in no list, since every
- * computation heeds them. */
+/* Options that do nothing. A list names the options that one purpose alone makes use of;
+ * the options that bound a computation are in no list, since every computation heeds
+ * them. */
 #include "tools/idle.h"
 
 enum { NAMES_MOST = 64 };
@@ -21,9 +21,6 @@ static const char *const PREDICTION[] = {"--alpha", NULL};
 static const char *const GATHER[] = {"--final-gather", NULL};
 static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
                                       "--sky", "--two-sided", "--two-sided-lamps", NULL};
-static const char *const FILES[] = {"-o", "--view", "--stats", "--dump", "--save-links",
-                                    "--load-links", "--checkpoint", "--every",
-                                    "--resume", "--form-factors", "--verbose", NULL};
 static const char *const METHOD[] = {"--oracle", "--linking", "--form-factor",
                                      "--solver", "--balance", NULL};
 
@@ -80,31 +77,15 @@ static void warn_overruled(struct run *run)
 
 void idle_warn(struct run *run)
 {
-    const struct options *options = &run->options;
     struct names names = {.count = 0};
-    bool pixels = false;
-    if (options->validate || options->form_factors) {
-        add(&names, PICTURE);
-        add(&names, COLOUR);
-        add(&names, OUTPUT);
-        add(&names, LIGHT);
-        add(&names, GATHER);
-    } else {
-        warn_overruled(run);
-        pixels = add_idle(options, &names);
-        if (!predicts(options))
-            add(&names, PREDICTION);
-    }
-    if (options->validate) {
-        add(&names, FACTORS);
-        add(&names, FILES);
-    }
-    const char *given = options_given(options, names.name);
-    bool scene = options->validate && options->scene;
-    if (*given || pixels || scene)
-        run_say(run, "warning: no use is made of %s%s%s%s", given,
-                *given && (pixels || scene) ? ", " : "", scene ? options->scene : "",
-                pixels ? "--final-gather pixels" : "");
+    warn_overruled(run);
+    bool pixels = add_idle(&run->options, &names);
+    if (!predicts(&run->options))
+        add(&names, PREDICTION);
+    const char *given = options_given(&run->options, names.name);
+    if (*given || pixels)
+        run_say(run, "warning: no use is made of %s%s%s", given,
+                *given && pixels ? ", " : "", pixels ? "--final-gather pixels" : "");
 }
 
 void idle_warn_stored(struct run *run)

@@ -1,11 +1,11 @@
-/* Options that do nothing in the chosen mode. */
+/* Options that do nothing. */
 #ifndef TOOLS_IDLE_H
 #define TOOLS_IDLE_H
 
 #include "tools/run.h"
 
-/* Warns once of the options given that do nothing for --validate, --form-factors, or
- * the outputs asked for; and of those that --paper behind them overrules. */
+/* Warns once of the options given that do nothing for the outputs asked for; and of those
+ * that --paper behind them overrules. */
 void idle_warn(struct run *run);
 
 /* Warns once of the options given that say how light is computed, as the scene turns out

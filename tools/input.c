@@ -1,4 +1,5 @@
-/* Reading the scene and its camera on rank 0, and probing the outputs. */
+/* Reading the scene and its camera on rank 0, probing the outputs, and passing the input
+ * on to all ranks. */
 #include "tools/input.h"
 
 #include <math.h>
@@ -11,9 +12,9 @@
 #include "io/scene/ply.h"
 #include "io/scene/sky.h"
 #include "geom/signals.h"
+#include "mpi/broadcast.h"
 #include "tools/idle.h"
 #include "tools/show.h"
-#include "tools/viewfactor.h"
 
 /* Warns of `count` cases, if there are any; `text` may have a place for `detail`. */
 static void warn(struct run *run, int64_t count, const char *text, const char *detail)
@@ -86,15 +87,6 @@ static bool check_emission(const struct run *run, struct error *error)
     return true;
 }
 
-static bool check_groups(const struct run *run, struct error *error)
-{
-    if (run->scene->groups.count > VIEWFACTOR_GROUPS_MAX)
-        return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d",
-                         run->options.scene, (long long)run->scene->groups.count,
-                         VIEWFACTOR_GROUPS_MAX);
-    return true;
-}
-
 /* Refuses options that ask for files of a computation, or for links. */
 static bool check_stored(struct run *run)
 {
@@ -134,7 +126,7 @@ static bool read_ply(struct run *run, struct source *source)
     struct ply_file file;
     char number[32], names[200];
     bool good = ply_file_open(&file, source, &run->error);
-    if (good && solution_is_stored(&file) && !run->options.form_factors)
+    if (good && solution_is_stored(&file) && !run->options.unlit)
         good = take_stored(run, &file);
     else if (good)
         run->scene = ply_of_file(&file, &run->error);
@@ -202,14 +194,13 @@ static bool read_scene(struct run *run)
         scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
-    if (!run->options.form_factors)
+    if (!run->options.unlit)
         add_sky(run);
     struct error wrong = {0};
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
     warn_repairs(run, &read, &prepared);
-    return run->options.form_factors ? check_groups(run, error)
-                                     : check_emission(run, error);
+    return run->options.unlit || check_emission(run, error);
 }
 
 /* Reads the view files; --size overrides their sizes. */
@@ -228,7 +219,8 @@ static bool read_cameras(struct run *run)
     return true;
 }
 
-void input_read(struct run *run)
+/* Reads all, on rank 0. Errors are in run->error. */
+static void read_input(struct run *run)
 {
     signals_end_calls(true);
     if (files_check(&run->options, &run->error) &&
@@ -237,4 +229,20 @@ void input_read(struct run *run)
         show_check(run);
     }
     signals_end_calls(false);
+}
+
+bool input_broadcast(struct run *run)
+{
+    size_t cameras = (size_t)run_camera_count(run);
+    run->cameras = alloc_array(cameras, sizeof *run->cameras);
+    if (run->comm.rank == 0)
+        read_input(run);
+    if (!run_agree(run))
+        return false;
+    run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
+    comm_broadcast(&run->comm, run->cameras, cameras * sizeof *run->cameras);
+    if (run->block.shared && run->options.verbose)
+        run_say(run, "one copy of scene and octree for %d ranks, %.1f MB",
+                run->block.node.size, 1e-6 * (double)run->block.bytes);
+    return run_goes_on(run);
 }

@@ -4,9 +4,10 @@
 
 #include "tools/run.h"
 
-/* On rank 0. Reads run->scene, prepared, and run->cameras as the options say, warns of
- * repairs, and probes the outputs. Errors (a wrong file, a scene without light, an output
- * that cannot be written, a --show that cannot be) are in run->error. */
-void input_read(struct run *run);
+/* Collective. Rank 0 reads run->scene, prepared, and run->cameras as the options say,
+ * warns of repairs, and probes the outputs; all receive scene, octree and cameras. False
+ * on an error (a wrong file, a scene without light, an output that cannot be written, a
+ * --show that cannot be), which is in run->error, on all ranks. */
+bool input_broadcast(struct run *run);
 
 #endif

@@ -5,12 +5,12 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
-
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/stop.h"
+#include "geom/hash.h"
 #include "geom/signals.h"
+#include "geom/stop.h"
 #include "io/run/output.h"
 
 void run_say(struct run *run, const char *format, ...)
@@ -20,7 +20,7 @@ void run_say(struct run *run, const char *format, ...)
     progress_view_clear(&run->progress);
     va_list arguments;
     va_start(arguments, format);
-    fputs("phr: ", stderr);
+    fprintf(stderr, "%s: ", error_program);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
@@ -43,7 +43,37 @@ void run_lose(struct run *run, const struct error *error)
     lost[lost_count++] = *error;
 }
 
-void run_end(struct run *run)
+/* Collective. True if all ranks have the arguments of rank 0. */
+static bool check_arguments(struct run *run, int argc, char **argv)
+{
+    uint64_t own = HASH_START, first;
+    for (int i = 1; i < argc; i++)
+        own = hash_bytes(own, argv[i], strlen(argv[i]) + 1);
+    first = own;
+    comm_broadcast(&run->comm, &first, sizeof first);
+    if (own != first)
+        error_set(&run->error, EXIT_USAGE, "the ranks have different arguments");
+    return comm_agree(&run->comm, &run->error);
+}
+
+bool run_start(struct run *run, int *argc, char ***argv)
+{
+    comm_start(&run->comm, argc, argv);
+    run->start = comm_seconds();
+    signals_catch();
+    return check_arguments(run, *argc, *argv);
+}
+
+bool run_parse(struct run *run, int argc, char **argv)
+{
+    bool parsed = options_parse(&run->options, argc, argv, &run->error);
+    if (run->comm.rank == 0 && !run->options.quiet)
+        progress_view_open(&run->progress, comm_seconds);
+    return parsed;
+}
+
+/* Collective. Prints all errors, on rank 0. */
+static void print_errors(struct run *run)
 {
     if (run->comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))
         error_set(&run->error, EXIT_FAILED, "cannot write to the standard output");
@@ -52,11 +82,10 @@ void run_end(struct run *run)
     comm_agree(&run->comm, &run->error);
     progress_view_clear(&run->progress);
     for (int i = 0; i < lost_count; i++)
-        fprintf(stderr, "phr: %s\n", lost[i].text);
+        fprintf(stderr, "%s: %s\n", error_program, lost[i].text);
     if (run->error.code != EXIT_DONE && run->comm.rank == 0)
-        fprintf(stderr, "phr: %s\n", run->error.text);
+        fprintf(stderr, "%s: %s\n", error_program, run->error.text);
     alloc_free(lost);
-    lost = NULL;
 }
 
 void run_free(struct run *run)
@@ -71,6 +100,18 @@ void run_free(struct run *run)
     if (run->block.data)
         node_block_destroy(&run->block);
     options_free(&run->options);
+}
+
+int run_end(struct run *run)
+{
+    print_errors(run);
+    run_free(run);
+    comm_stop(&run->comm);
+    if (alloc_balance() == 0)
+        return run->error.code;
+    fprintf(stderr, "%s: BUG: %lld blocks of memory were not freed\n", error_program,
+            (long long)alloc_balance());
+    return EXIT_FAILED;
 }
 
 const char *run_scene_name(const struct run *run)

@@ -45,9 +45,16 @@ void run_say(struct run *run, const char *format, ...);
  * goes on. Where it is asked to stop, the error is that of the run. */
 void run_lose(struct run *run, const struct error *error);
 
+/* Collective. Starts MPI, which may take arguments, and the clock; catches signals. False
+ * if the ranks have different arguments: they decide alike from here on. */
+bool run_start(struct run *run, int *argc, char ***argv);
+
+/* Collective. Reads the options, and shows progress unless they say --quiet. */
+bool run_parse(struct run *run, int argc, char **argv);
+
 /* Collective. Prints the errors of the run and of its outputs, by which all ranks have
- * an error then. */
-void run_end(struct run *run);
+ * an error then, frees all that the run has, and stops MPI. Returns the exit status. */
+int run_end(struct run *run);
 
 /* Collective. Frees all that a run owns but its ranks. */
 void run_free(struct run *run);

@@ -19,10 +19,11 @@ struct argument;
 
 struct option {
     const char *name;
-    bool (*set)(const struct argument *argument);
+    bool (*set)(const struct argument *argument); /* NULL: refused */
     size_t offset;       /* of the field in struct options */
     double low, high;    /* inclusive range of a number */
-    const char *choices; /* names, separated by bars, in the order of the field's enum */
+    const char *choices; /* names, separated by bars, in the order of the field's enum;
+                            of a refused option, the command that does its work */
 };
 
 /* An option on the command line, on its way to its field. */
@@ -366,8 +367,8 @@ static const struct option OPTIONS[] = {
     {"--show", set_show, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
     {"--quiet", set_flag, FIELD(quiet), 0, 0, NULL},
     {"--verbose", set_flag, FIELD(verbose), 0, 0, NULL},
-    {"--validate", set_flag, FIELD(validate), 0, 0, NULL},
-    {"--form-factors", set_flag, FIELD(form_factors), 0, 0, NULL},
+    {"--validate", NULL, 0, 0, 0, "viewfactors --validate"},
+    {"--form-factors", NULL, 0, 0, 0, "viewfactors SCENE"},
     {"--help", set_flag, FIELD(help), 0, 0, NULL},
     {"--version", set_flag, FIELD(version), 0, 0, NULL},
 };
@@ -408,8 +409,6 @@ static bool add_scene(struct options *options, const char *path, struct error *e
  * start. */
 static const double EPSILON = 1e-4, COARSE = 1e-3;
 
-/* That of --epsilon for form factors. */
-static const double EPSILON_FACTORS = 1e-2;
 enum { GATHER_RAYS = 256, FEW_RAYS = 64 };
 
 static void set_defaults(struct options *options)
@@ -420,9 +419,7 @@ static void set_defaults(struct options *options)
     if (criterion->final_gather == NOT_GIVEN)
         criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
     if (criterion->epsilon < 0.0)
-        criterion->epsilon = options->form_factors ? EPSILON_FACTORS
-                             : accurate            ? COARSE
-                                                   : EPSILON;
+        criterion->epsilon = accurate ? COARSE : EPSILON;
     options->two_sided = options->two_sided || options->two_sided_lamps;
 }
 
@@ -435,29 +432,14 @@ static const char *find_idle_view(const struct options *options)
     return NULL;
 }
 
-/* Returns an option that asks for light, or NULL. */
-static const char *find_light(const struct options *options)
-{
-    return options->output_count > 0 ? "-o"
-           : options->view_count > 0 ? "--view"
-           : options->stats          ? "--stats"
-           : options->save_links     ? "--save-links"
-           : options->load_links     ? "--load-links"
-           : options->dump           ? "--dump"
-           : rgb_sum(options->sky) > 0.0 ? "--sky"
-           : options->checkpoint     ? "--checkpoint"
-           : options->resume         ? "--resume"
-                                     : NULL;
-}
-
 /* Checks how options go together: the rows of the final gather find lamps in the tree,
- * --accuracy measures the error of these rows, and --form-factors computes no light. */
+ * and --accuracy measures the error of these rows. */
 static bool check_rules(const struct options *o, struct error *error)
 {
     const struct criterion *criterion = &o->criterion;
     bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
     bool rays = criterion->final_gather > 0, scene = o->scene != NULL;
-    const char *view = find_idle_view(o), *light = find_light(o);
+    const char *view = find_idle_view(o);
     const char *links = o->save_links   ? "--save-links"
                         : o->load_links ? "--load-links"
                                         : NULL;
@@ -471,10 +453,7 @@ static bool check_rules(const struct options *o, struct error *error)
         {o->pixels && !rays, "--final-gather pixels needs rays, and a tree", ""},
         {o->pixels && o->flat, "--flat and --final-gather pixels do not go together", ""},
         {scene && o->quiet && o->verbose, "--quiet and --verbose do not go together", ""},
-        {!scene && !o->help && !o->version && !o->validate, "no scene given; see --help",
-         ""},
-        {scene && o->form_factors && light, "--form-factors and %s do not go together",
-         light},
+        {!scene && !o->help && !o->version, "no scene given; see --help", ""},
         {scene && view, "--view %s: no picture (-o) follows it", view},
         {scene && o->resume && links,
          "--resume and %s do not go together: the initial links are long gone", links},
@@ -526,6 +505,9 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         if (!option)
             return error_set(error, EXIT_USAGE, "unknown option %s; see --help",
                              argument);
+        if (!option->set)
+            return error_set(error, EXIT_USAGE, "%s is a program of its own now: %s",
+                             option->name, option->choices);
         options->given |= UINT64_C(1) << (option - OPTIONS);
         options->overruled &= ~(UINT64_C(1) << (option - OPTIONS));
         bool alone = option->set == set_flag || option->set == set_paper;
@@ -590,6 +572,17 @@ const char *options_given(const struct options *options, const char *const *name
             at += (size_t)snprintf(text + at, sizeof text - at, "%s%s",
                                    at > 0 ? ", " : "", *names);
     return text;
+}
+
+const char *options_other(const struct options *options, const char *const *names)
+{
+    uint64_t others = options->given;
+    for (; *names; names++)
+        others &= ~(UINT64_C(1) << (find_option(*names) - OPTIONS));
+    for (int i = 0; others; i++, others >>= 1)
+        if (others & 1u)
+            return OPTIONS[i].name;
+    return NULL;
 }
 
 const char *options_link_settings(const struct options *options)
@@ -658,7 +651,6 @@ static const char HELP[] =
     "  --save-links F   those of all pairs     --load-links F  in their place\n"
     "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
     "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
-    "  --form-factors   CSV of F, epsilon 1e-2 --validate    check form factors\n"
     "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
     "  --dump patches|links  print these       --quiet       print nothing\n"
     "  --show light|mesh|owner|level|error|links:PATCH       --help, --version\n"

@@ -34,7 +34,7 @@ enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
 enum ke { KE_RADIOSITY, KE_RADIANCE };
 
 struct options {
-    const char *scene;        /* path of the scene, NULL with help, version or validate */
+    const char *scene;        /* path of the scene, NULL with help or version */
     struct target *outputs;   /* [output_count] owned */
     int output_count;
     const char **views;       /* [view_count] paths of --view, borrowed; owned array */
@@ -60,7 +60,8 @@ struct options {
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     const char *help_on;      /* option of --help=OPTION, or NULL */
-    bool flat, quiet, verbose, help, version, validate, form_factors;
+    bool flat, quiet, verbose, help, version;
+    bool unlit;               /* viewfactors': no light is asked for, no lamp is needed */
     struct criterion criterion;
     uint64_t given;           /* bit i: the i-th option of the parser's table */
     uint64_t overruled;       /* the same: given before --paper, and not behind it */
@@ -98,6 +99,9 @@ bool options_show(const struct options *options, int view);
 /* Returns those of `names`, with a NULL behind the last, that the command line has,
  * joined by commas; an empty text if there are none. Overwritten by the next call. */
 const char *options_given(const struct options *options, const char *const *names);
+
+/* Returns an option that the command line has and `names` have not, or NULL. */
+const char *options_other(const struct options *options, const char *const *names);
 
 /* Prints the text of --help, or the part of it on an option, with its range. */
 void options_print_help(const char *option, FILE *file);

@@ -1,11 +1,11 @@
-/* Tests of geom/contour.h: the table of exact values (tools/cases.c), closed forms of
- * rectangles in any place, and identities: rows of closed solids add up to 1, parts add
- * up to the whole, no order of arguments, no motion and no unit matters. */
+/* Tests of geom/contour.h: the table of exact values (viewfactors/cases.c), closed forms
+ * of rectangles in any place, and identities: rows of closed solids add up to 1, parts
+ * add up to the whole, no order of arguments, no motion and no unit matters. */
 #include "geom/contour.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
-#include "tools/cases.h"
+#include "tools/viewfactors/cases.h"
 #include "geom/gauss.h"
 
 static const long double LONG_PI = 3.14159265358979323846264338327950288L;

@@ -158,8 +158,6 @@ static void test_switches(void)
            "values behind '=', and a scene behind --");
     tap_ok(parse("--version") && options.version && !options.help,
            "--version needs no scene");
-    tap_ok(parse("--validate") && options.validate && !options.scene,
-           "--validate needs no scene");
     tap_ok(parse("--accuracy 2.5% a.obj") && options.criterion.accuracy == 0.025 &&
                options.criterion.epsilon == 1e-3 && options.criterion.final_gather == 64,
            "--accuracy in percent, from a coarse epsilon and few rays");
@@ -304,8 +302,8 @@ static const char *const VALUED[] = {
     "--solver", "--balance", "--dump", "--show", "--save-links", "--load-links",
     "--resume", "--checkpoint", "--memory", "--sky"};
 static const char *const FLAGS[] = {"--flat", "--two-sided", "--two-sided-lamps",
-                                    "--paper", "--quiet", "--verbose", "--validate",
-                                    "--form-factors", "--help", "--version"};
+                                    "--paper", "--quiet", "--verbose", "--help",
+                                    "--version"};
 enum { VALUED_COUNT = sizeof VALUED / sizeof VALUED[0],
        FLAG_COUNT = sizeof FLAGS / sizeof FLAGS[0] };
 
@@ -479,8 +477,6 @@ static void test_restart(void)
     check_refused(
         "a.obj --resume c --save-links c",
         "--resume and --save-links do not go together: the initial links are long gone");
-    check_refused("a.obj --form-factors --checkpoint c",
-                  "--form-factors and --checkpoint do not go together");
 }
 
 static void test_settings(void)

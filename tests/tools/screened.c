@@ -1,8 +1,8 @@
-/* Tests of tools/screened.h: exact answers where whole shadows fall on the target, or
- * where two sets of screens tile a wall, so that each segment is stopped by one of them;
- * sums over many segments; screens that nothing passes, that hide nothing, that reach
- * behind the two triangles, and too many of them. The error that is told holds. */
-#include "tools/screened.h"
+/* Tests of viewfactors/screened.h: exact answers where whole shadows fall on the target,
+ * or where two sets of screens tile a wall, so that each segment is stopped by one of
+ * them; sums over many segments; screens that nothing passes, that hide nothing, that
+ * reach behind the two triangles, and too many of them. The error that is told holds. */
+#include "tools/viewfactors/screened.h"
 
 #include "geom/contour.h"
 #include "tests/scenes.h"
@@ -12,7 +12,7 @@ enum { PAIRS = 40, PARTS = 256 };
 
 static const double TOLERANCES[] = {1e-3, 1e-4, 1e-5};
 
-/* Smaller errors of F are not told (tools/viewfactor.c). */
+/* Smaller errors of F are not told (viewfactor.c). */
 static const double LEAST = 1e-5;
 
 static struct facet facet_of(struct triangle t)

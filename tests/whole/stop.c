@@ -21,8 +21,8 @@
 #include "tests/load.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
-#include "tools/pairs.h"
-#include "tools/table.h"
+#include "tools/viewfactors/pairs.h"
+#include "tools/viewfactors/table.h"
 
 #define OBJ "build/stop_test.obj"
 #define TEXT_PLY "build/stop_test.text.ply"

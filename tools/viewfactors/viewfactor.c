@@ -7,7 +7,7 @@
  *     weighted by the light that they would carry; exact if nothing is in the shaft;
  *   - if not, the triangles in the shaft between the two are listed. None: the exchange
  *     is G, for patches of any size. Few: it is found from points of the smaller patch,
- *     each of which knows exactly what it sees past them (tools/screened.h), within a
+ *     each of which knows exactly what it sees past them (screened.h), within a
  *     tenth of T for each part of the patch. More, or points of a strong pair that all
  *     see nothing, or all, without a proof: it is the sum over the four children of the
  *     larger patch. One wall between all corners proves that it is 0.
@@ -26,7 +26,7 @@
  * than stratified ends deserve, and not less than the square of a tenth and of the factor
  * between the two patches: a few segments carry most of the light of near ones. Where a
  * patch is in part behind the other's plane, few segments count, or none. What
- * points know exactly has an upper limit (tools/screened.c), which counts as three
+ * points know exactly has an upper limit (screened.c), which counts as three
  * standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its standard error
  * at most: 2 for one factor, 5.5 for half a million.
  *
@@ -36,7 +36,7 @@
  * decided the same way, so that the error would fall only with the size of the patches;
  * and the decision would depend on the last bit, so that a rotated scene would get other
  * factors. */
-#include "tools/viewfactor.h"
+#include "tools/viewfactors/viewfactor.h"
 
 #include <math.h>
 
@@ -46,7 +46,7 @@
 #include "geom/stop.h"
 #include "rad/id.h"
 #include "geom/contour.h"
-#include "tools/screened.h"
+#include "tools/viewfactors/screened.h"
 
 /* Part of the threshold that a part of a patch may be off past few blockers. */
 static const double FINER = 0.1;

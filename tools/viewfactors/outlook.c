@@ -1,7 +1,7 @@
 /* The hidden part is a cone with its top at the point. A piece is cut along the planes of
  * the cone, one by one: the part outside of a plane is seen, the part inside goes on to
  * the next plane; the part inside of all three is hidden. */
-#include "geom/outlook.h"
+#include "tools/viewfactors/outlook.h"
 
 void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t)
 {

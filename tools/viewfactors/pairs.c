@@ -7,7 +7,7 @@
  * integers, so they do not depend on the ranks that add. They are sent in pieces that MPI
  * can count. After each TURN pairs of every rank all learn whether one of them has got a
  * signal: the deal is the same on all ranks, so they meet there. */
-#include "tools/pairs.h"
+#include "tools/viewfactors/pairs.h"
 
 #include "geom/alloc.h"
 #include "geom/stop.h"

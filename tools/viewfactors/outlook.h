@@ -1,6 +1,6 @@
 /* The part of a triangle that is seen from a point past other triangles, exactly. */
-#ifndef GEOM_OUTLOOK_H
-#define GEOM_OUTLOOK_H
+#ifndef TOOLS_VIEWFACTORS_OUTLOOK_H
+#define TOOLS_VIEWFACTORS_OUTLOOK_H
 
 #include <stdbool.h>
 

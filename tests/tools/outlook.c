@@ -1,6 +1,6 @@
-/* Tests of geom/outlook.h: the visible part of a triangle, by its factor and by
+/* Tests of viewfactors/outlook.h: the visible part of a triangle, by its factor and by
  * segments. */
-#include "geom/outlook.h"
+#include "tools/viewfactors/outlook.h"
 
 #include <math.h>
 

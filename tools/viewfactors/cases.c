@@ -1,4 +1,4 @@
-/* The table behind phr --validate.
+/* The table behind viewfactors --validate.
  *
  * P to Z were computed with 30 digits and more: parallel (P), perpendicular (L) and
  * hinged pairs (W), slivers and needles (S), general pairs (G), far ones (F), and pairs
@@ -7,7 +7,7 @@
  * over rectangles; the tilted triangles are integrals over both by Gauss' rule of 12 x 12
  * points each, with 25 digits. The table is part of the program, so that any copy of phr
  * can be checked on its machine. */
-#include "tools/cases.h"
+#include "tools/viewfactors/cases.h"
 
 const struct pair_case PAIR_CASES[] = {
     {"P01", "opposed unit squares, distance 1", 0.19982489569838738,

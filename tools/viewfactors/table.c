@@ -3,7 +3,7 @@
  * 17 digits represent each double exactly, so that A_i F_ij and A_j F_ji, read back, are
  * equal but for the rounding of one division. The sum of a row adds its printed factors,
  * in their order. */
-#include "tools/table.h"
+#include "tools/viewfactors/table.h"
 
 #include <string.h>
 

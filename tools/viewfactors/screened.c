@@ -2,7 +2,7 @@
  *
  * With F(x) the form factor from a point x of one triangle, the viewer, to the other, the
  * target, and S(x) that of the part of the target which x sees past the screens, known
- * exactly (geom/outlook.h),
+ * exactly (outlook.h),
  *
  *     G = integral over the viewer of S(x) dA
  *       = G without screens  -  integral over the viewer of (F - S)(x) dA.
@@ -24,12 +24,12 @@
  * as many; the larger triangle as the viewer, whose points are far apart for the distance
  * of the target; the views from both triangles, held against each other: most pairs for
  * which they differed were those where the larger one was wrong. */
-#include "tools/screened.h"
+#include "tools/viewfactors/screened.h"
 
 #include <math.h>
 
 #include "geom/lambert.h"
-#include "geom/outlook.h"
+#include "tools/viewfactors/outlook.h"
 #include "geom/stop.h"
 
 enum { DEEPEST = 7 }; /* quarterings of the viewer at most */

@@ -1,11 +1,11 @@
-/* View factors between the groups of a scene, with blockers, for phr --form-factors.
+/* View factors between the groups of a scene, with blockers.
  *
  * F_ij (1) is the fraction of the light that leaves the fronts of group i evenly and
  * arrives first on the fronts of group j. Exchange areas are stored, G_ij = A_i F_ij =
  * A_j F_ji: one number for both directions, so reciprocity is exact; it is a sum of
  * integers (rad/flux.h), so it does not depend on ranks or order. */
-#ifndef TOOLS_VIEWFACTOR_H
-#define TOOLS_VIEWFACTOR_H
+#ifndef TOOLS_VIEWFACTORS_VIEWFACTOR_H
+#define TOOLS_VIEWFACTORS_VIEWFACTOR_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
-/* Cases with exact answers, for phr --validate. */
-#ifndef TOOLS_CASES_H
-#define TOOLS_CASES_H
+/* Cases with exact answers, for viewfactors --validate. */
+#ifndef TOOLS_VIEWFACTORS_CASES_H
+#define TOOLS_VIEWFACTORS_CASES_H
 
 #include <stdint.h>
 

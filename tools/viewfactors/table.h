@@ -1,10 +1,10 @@
-/* The table of --form-factors, as CSV. */
-#ifndef TOOLS_TABLE_H
-#define TOOLS_TABLE_H
+/* A table of view factors, as CSV. */
+#ifndef TOOLS_VIEWFACTORS_TABLE_H
+#define TOOLS_VIEWFACTORS_TABLE_H
 
 #include <stdio.h>
 
-#include "tools/viewfactor.h"
+#include "tools/viewfactors/viewfactor.h"
 
 /* Prints the header `from,to,area_from,F`, then for each group a line for each group and
  * one for the sum, whose `to` is `*`. Order: that of the groups in the file. Areas in

@@ -1,6 +1,6 @@
-/* phr --validate: every form factor of the program against exact answers. */
-#ifndef TOOLS_VALIDATE_H
-#define TOOLS_VALIDATE_H
+/* Every form factor of phr against exact answers. */
+#ifndef TOOLS_VIEWFACTORS_VALIDATE_H
+#define TOOLS_VIEWFACTORS_VALIDATE_H
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* The exchange of two triangles past a few others, exact from points. */
-#ifndef TOOLS_SCREENED_H
-#define TOOLS_SCREENED_H
+#ifndef TOOLS_VIEWFACTORS_SCREENED_H
+#define TOOLS_VIEWFACTORS_SCREENED_H
 
 #include "rad/formfactor.h"
 

@@ -1,10 +1,10 @@
 /* View factors on all ranks: pairs of roots are dealt, exchanges are summed. */
-#ifndef TOOLS_PAIRS_H
-#define TOOLS_PAIRS_H
+#ifndef TOOLS_VIEWFACTORS_PAIRS_H
+#define TOOLS_VIEWFACTORS_PAIRS_H
 
 #include "geom/progress.h"
 #include "mpi/comm.h"
-#include "tools/viewfactor.h"
+#include "tools/viewfactors/viewfactor.h"
 
 /* Collective. Adds all pairs of roots that face each other to `factors`, which are equal
  * on all ranks and new, or taken back in part by viewfactors_refine(). All ranks end with

@@ -14,7 +14,7 @@
  * shown in brackets.
  *
  * Polygons are scaled into the unit cube, in which the solver works, too. */
-#include "tools/validate.h"
+#include "tools/viewfactors/validate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@
 #include "geom/alloc.h"
 #include "geom/lambert.h"
 #include "rad/beyond/patch_exchange.h"
-#include "tools/cases.h"
+#include "tools/viewfactors/cases.h"
 #include "geom/contour.h"
 
 /* --- a case, prepared --- */

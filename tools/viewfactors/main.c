@@ -1,0 +1,140 @@
+/* viewfactors: form factors between the groups of a scene, with blockers, as CSV; and
+ * every form factor of phr against exact answers. A program of its own, installed for
+ * users of heat balances.
+ *
+ * Scenes are read as phr reads them, and no light is computed.
+ *
+ * With --accuracy, pairs of groups that are not good enough are done again with a smaller
+ * epsilon, at most ROUNDS times: each round costs several times the one before, so that
+ * those before cost little. */
+#include <string.h>
+
+#include "geom/stop.h"
+#include "tools/input.h"
+#include "tools/viewfactors/pairs.h"
+#include "tools/viewfactors/table.h"
+#include "tools/viewfactors/validate.h"
+
+static const char HELP[] =
+    "usage: viewfactors [options] SCENE  or  mpiexec -n P viewfactors [options] SCENE\n"
+    "       viewfactors --validate\n"
+    "Prints the form factors F between the groups (o, g) of a scene, OBJ or PLY, with\n"
+    "blockers, as CSV. Defaults in brackets.\n"
+    "  --epsilon E    of the smaller group's area, in doubt between two patches (1e-2)\n"
+    "  --accuracy A   smaller epsilons, until no F is off by more\n"
+    "  --max-level N  of subdivision (10)\n"
+    "  --two-sided, --two-sided-lamps  faces have backs, those of lamps, too\n"
+    "  --validate     each form factor of phr for 81 pairs with exact answers\n"
+    "  --quiet  --verbose  --help  --version\n"
+    "Exit status: 0 done; 1 failed, stopped, worse than stated; 2 bad usage or input.\n";
+
+/* The options of phr that are options here, too. */
+static const char *const OPTIONS[] = {
+    "--epsilon", "--accuracy", "--max-level", "--two-sided", "--two-sided-lamps",
+    "--quiet", "--verbose", "--help", "--version", NULL};
+
+/* The default of --epsilon, with --accuracy and without. */
+static const double EPSILON = 1e-2;
+
+enum { ROUNDS = 12, STUCK_MOST = 2 };
+
+/* An error that is not below this part of the last round's, in STUCK_MOST rounds one
+ * after another, no longer falls. */
+static const double STUCK = 0.95;
+
+/* Adds all pairs, in rounds. Returns the largest error of F; stops at a signal. */
+static double add_in_rounds(struct run *run, struct viewfactors *factors)
+{
+    double accuracy = run->options.criterion.accuracy, error = 0.0, last;
+    int stuck = 0; /* rounds in a row */
+    for (int round = 1;; round++) {
+        last = error;
+        progress_begin(&run->progress.progress, "form factors", -1, 0);
+        pairs_add(&run->comm, factors, &run->progress.progress);
+        progress_view_clear(&run->progress);
+        if (!run_goes_on(run))
+            return 0.0;
+        error = viewfactors_error(factors);
+        stuck = round > 1 && error > STUCK * last ? stuck + 1 : 0;
+        if (!(accuracy > 0.0) || error <= accuracy || stuck == STUCK_MOST ||
+            round == ROUNDS)
+            return error;
+        viewfactors_refine(factors, accuracy);
+    }
+}
+
+static void report(struct run *run, double error)
+{
+    double accuracy = run->options.criterion.accuracy;
+    if (accuracy > 0.0 && error > accuracy)
+        run_say(run,
+                "warning: the largest error of F is %.2g, not the %.3g of --accuracy: "
+                "a smaller epsilon no longer helps, or --max-level is in the way",
+                error, accuracy);
+    run_say(run, "%.1f s; largest error of F: %.2g", comm_seconds() - run->start, error);
+}
+
+/* Collective. Prints the form factors between the groups of the scene. */
+static void tabulate(struct run *run)
+{
+    const struct criterion *criterion = &run->options.criterion;
+    if (run->scene->groups.count > VIEWFACTOR_GROUPS_MAX) {
+        error_set(&run->error, EXIT_USAGE, "%s: %lld groups are more than %d",
+                  run->options.scene, (long long)run->scene->groups.count,
+                  VIEWFACTOR_GROUPS_MAX);
+        return;
+    }
+    run_say(run, "%s: %lld triangles in %lld groups", run->options.scene,
+            (long long)run->scene->input_count, (long long)run->scene->groups.count);
+    struct viewfactors *factors = viewfactors_create(
+        run->scene, run->octree, criterion->epsilon, criterion->max_level);
+    double error = add_in_rounds(run, factors);
+    if (run->error.code == EXIT_DONE && run->comm.rank == 0) {
+        table_print(factors, stdout);
+        stop_check(&run->error);
+    }
+    if (run_agree(run))
+        report(run, error);
+    viewfactors_destroy(factors);
+}
+
+/* Collective. Reads the options. False on one of phr's that is none here. */
+static bool parse(struct run *run, int argc, char **argv)
+{
+    static const char *const FINENESS[] = {"--epsilon", NULL};
+    if (!run_parse(run, argc, argv))
+        return false;
+    const char *other = options_other(&run->options, OPTIONS);
+    if (other)
+        return error_set(&run->error, EXIT_USAGE, "unknown option %s; see --help", other);
+    run->options.unlit = true;
+    if (!*options_given(&run->options, FINENESS))
+        run->options.criterion.epsilon = EPSILON;
+    return true;
+}
+
+static void print_words(const struct options *options)
+{
+    if (options->help)
+        fputs(HELP, stdout);
+    else
+        printf("viewfactors %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
+}
+
+int main(int argc, char **argv)
+{
+    error_program = "viewfactors";
+    struct run run = {0};
+    bool started = run_start(&run, &argc, &argv), first = run.comm.rank == 0;
+    if (started && argc == 2 && strcmp(argv[1], "--validate") == 0) {
+        if (first && !validate_print(stdout))
+            error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
+    } else if (started && parse(&run, argc, argv)) {
+        bool words = run.options.help || run.options.version;
+        if (words && first)
+            print_words(&run.options);
+        if (!words && input_broadcast(&run))
+            tabulate(&run);
+    }
+    return run_end(&run);
+}
