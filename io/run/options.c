@@ -1,8 +1,8 @@
 /* The command line.
  *
- * Options are a table: name, the function that sets it, field in struct options, and
- * range. --help is plain text beside it, so that it reads as it prints, and fits a screen
- * of 24 lines; tests/52-words.sh compares the two, and the man page. */
+ * Options are a table: name, words of the help, the function that sets the field in
+ * struct options, and its range. Parser and --help are made of it; tests/52-words.sh
+ * compares the man page with the help. */
 #include "io/run/options.h"
 
 #include <ctype.h>
@@ -19,11 +19,13 @@ struct argument;
 
 struct option {
     const char *name;
+    const char *value;   /* as the help calls it; "" of a flag */
+    const char *help;    /* a few words, the default in brackets; of a refused option, the
+                            command that does its work */
     bool (*set)(const struct argument *argument); /* NULL: refused */
     size_t offset;       /* of the field in struct options */
     double low, high;    /* inclusive range of a number */
-    const char *choices; /* names, separated by bars, in the order of the field's enum;
-                            of a refused option, the command that does its work */
+    const char *choices; /* names, separated by bars, in the order of the field's enum */
 };
 
 /* An option on the command line, on its way to its field. */
@@ -329,55 +331,68 @@ static bool set_paper(const struct argument *a)
 /* --- the table --- */
 
 #define FIELD(name) offsetof(struct options, name)
+#define FLAG(name) set_flag, FIELD(name), 0, 0, NULL
+#define TEXT(name) set_text, FIELD(name), 0, 0, NULL
+#define REAL(name, low, high) set_real, FIELD(name), low, high, NULL
+#define WHOLE(name, low, high) set_integer, FIELD(name), low, high, NULL
+#define CHOICE(name, choices) set_choice, FIELD(name), 0, 0, choices
+#define OTHER(set) set, 0, 0, 0, NULL
 
 static const struct option OPTIONS[] = {
-    {"-o", add_output, 0, 0, 0, NULL},
-    {"--view", add_view, 0, 0, 0, NULL},
-    {"--size", set_size, 0, 0, 0, NULL},
-    {"--samples", set_integer, FIELD(samples), 1, 64, NULL},
-    {"--exposure", set_real, FIELD(exposure), 1e-30, 1e30, NULL},
-    {"--flat", set_flag, FIELD(flat), 0, 0, NULL},
-    {"--epsilon", set_real, FIELD(criterion.epsilon), 0, 1e30, NULL},
-    {"--accuracy", set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
-    {"--max-level", set_integer, FIELD(criterion.max_level), 0, ID_MAX_LEVEL, NULL},
-    {"--min-area", set_real, FIELD(criterion.min_area), 0, 1, NULL},
-    {"--oracle", set_choice, FIELD(criterion.oracle), 0, 0, "bf|error"},
-    {"--linking", set_choice, FIELD(criterion.linking), 0, 0, "pairs|tree"},
-    {"--form-factor", set_choice, FIELD(criterion.form_factor), 0, 0, "disk|polygon"},
-    {"--solver", set_choice, FIELD(criterion.solver), 0, 0, "jacobi|cg"},
-    {"--balance", set_choice, FIELD(criterion.balance), 0, 0, "none|greedy|default"},
-    {"--final-gather", set_gather, FIELD(criterion.final_gather), 0, GATHER_RAYS_MOST,
-     NULL},
-    {"--paper", set_paper, FIELD(criterion), 0, 0, NULL},
-    {"--alpha", set_real, FIELD(criterion.alpha), 0, 1, NULL},
-    {"--tolerance", set_real, FIELD(criterion.tolerance), 0, 1, NULL},
-    {"--max-iterations", set_integer, FIELD(criterion.max_iterations), 1, 1e9, NULL},
-    {"--ke", set_choice, FIELD(ke), 0, 0, "radiosity|radiance"},
-    {"--sky", set_colour, FIELD(sky), 0, 1e30, NULL},
-    {"--two-sided", set_flag, FIELD(two_sided), 0, 0, NULL},
-    {"--two-sided-lamps", set_flag, FIELD(two_sided_lamps), 0, 0, NULL},
-    {"--save-links", set_text, FIELD(save_links), 0, 0, NULL},
-    {"--load-links", set_text, FIELD(load_links), 0, 0, NULL},
-    {"--checkpoint", set_text, FIELD(checkpoint), 0, 0, NULL},
-    {"--every", set_integer, FIELD(every), 1, 1e9, NULL},
-    {"--resume", set_text, FIELD(resume), 0, 0, NULL},
-    {"--memory", set_bytes, FIELD(memory), 1, 1e18, NULL},
-    {"--stats", set_text, FIELD(stats), 0, 0, NULL},
-    {"--dump", set_choice, FIELD(dump), 0, 0, "nothing|patches|links"},
-    {"--show", set_show, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
-    {"--quiet", set_flag, FIELD(quiet), 0, 0, NULL},
-    {"--verbose", set_flag, FIELD(verbose), 0, 0, NULL},
-    {"--validate", NULL, 0, 0, 0, "viewfactors --validate"},
-    {"--form-factors", NULL, 0, 0, 0, "viewfactors SCENE"},
-    {"--help", set_flag, FIELD(help), 0, 0, NULL},
-    {"--version", set_flag, FIELD(version), 0, 0, NULL},
+    {"-o", "[FORMAT:]FILE", "picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk",
+     OTHER(add_output)},
+    {"--view", "FILE", "of the -o behind it", OTHER(add_view)},
+    {"--size", "WxH", "pixels (512x512)", OTHER(set_size)},
+    {"--samples", "N", "N x N rays a pixel (3)", WHOLE(samples, 1, 64)},
+    {"--exposure", "X", "factor (automatic)", REAL(exposure, 1e-30, 1e30)},
+    {"--flat", "", "no interpolation", FLAG(flat)},
+    {"--show", "mesh|owner|level|error|links:P", "",
+     set_show, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
+    {"--epsilon", "E", "error of a link (1e-4)", REAL(criterion.epsilon, 0, 1e30)},
+    {"--accuracy", "A", "refine to this error",
+     set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
+    {"--max-level", "N", "of subdivision (10)",
+     WHOLE(criterion.max_level, 0, ID_MAX_LEVEL)},
+    {"--min-area", "A", "of a patch (1e-10)", REAL(criterion.min_area, 0, 1)},
+    {"--tolerance", "T", "of the solution (1e-5)", REAL(criterion.tolerance, 0, 1)},
+    {"--max-iterations", "N", "at most (1000)", WHOLE(criterion.max_iterations, 1, 1e9)},
+    {"--oracle", "error|bf", "what splits a link", CHOICE(criterion.oracle, "bf|error")},
+    {"--form-factor", "polygon|disk", "", CHOICE(criterion.form_factor, "disk|polygon")},
+    {"--linking", "tree|pairs", "where links begin",
+     CHOICE(criterion.linking, "pairs|tree")},
+    {"--final-gather", "N[,pixels]", "rays (256)",
+     set_gather, FIELD(criterion.final_gather), 0, GATHER_RAYS_MOST, NULL},
+    {"--solver", "cg|jacobi", "over the links", CHOICE(criterion.solver, "jacobi|cg")},
+    {"--balance", "default|greedy|none", "",
+     CHOICE(criterion.balance, "none|greedy|default")},
+    {"--paper", "", "the paper's of these", set_paper, FIELD(criterion), 0, 0, NULL},
+    {"--alpha", "A", "inherited cost (0.5)", REAL(criterion.alpha, 0, 1)},
+    {"--two-sided", "", "backs reflect", FLAG(two_sided)},
+    {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
+    {"--ke", "radiosity|radiance", "of lamps", CHOICE(ke, "radiosity|radiance")},
+    {"--sky", "B|R,G,B", "around the scene", set_colour, FIELD(sky), 0, 1e30, NULL},
+    {"--save-links", "F", "those of all pairs", TEXT(save_links)},
+    {"--load-links", "F", "in their place", TEXT(load_links)},
+    {"--checkpoint", "F", "after each pass", TEXT(checkpoint)},
+    {"--every", "N", "only each N-th pass (1)", WHOLE(every, 1, 1e9)},
+    {"--resume", "F", "go on from there", TEXT(resume)},
+    {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
+    {"--stats", "FILE", "report as JSON", TEXT(stats)},
+    {"--verbose", "", "levels of refinement", FLAG(verbose)},
+    {"--dump", "patches|links", "print these", CHOICE(dump, "nothing|patches|links")},
+    {"--quiet", "", "print nothing", FLAG(quiet)},
+    {"--help", "", "or --help=OPTION", FLAG(help)},
+    {"--version", "", "and licence", FLAG(version)},
+    {"--validate", NULL, "viewfactors --validate", OTHER(NULL)},
+    {"--form-factors", NULL, "viewfactors SCENE", OTHER(NULL)},
 };
+enum { OPTION_COUNT = sizeof OPTIONS / sizeof OPTIONS[0] };
 
 /* Finds the option of an argument "--option", "--option=value" or "-o". */
 static const struct option *find_option(const char *name)
 {
     size_t length = strncmp(name, "--", 2) == 0 ? strcspn(name, "=") : strlen(name);
-    for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++)
+    for (int i = 0; i < OPTION_COUNT; i++)
         if (strncmp(name, OPTIONS[i].name, length) == 0 && !OPTIONS[i].name[length])
             return &OPTIONS[i];
     return strcmp(name, "-h") == 0 ? find_option("--help") : NULL;
@@ -507,10 +522,10 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                              argument);
         if (!option->set)
             return error_set(error, EXIT_USAGE, "%s is a program of its own now: %s",
-                             option->name, option->choices);
+                             option->name, option->help);
         options->given |= UINT64_C(1) << (option - OPTIONS);
         options->overruled &= ~(UINT64_C(1) << (option - OPTIONS));
-        bool alone = option->set == set_flag || option->set == set_paper;
+        bool alone = !*option->value;
         const char *value = argument[1] == '-' ? strchr(argument, '=') : NULL;
         value = value ? value + 1 : NULL;
         bool asks = value && option->offset == FIELD(help);
@@ -633,45 +648,49 @@ void options_free(struct options *options)
     options->views = NULL;
 }
 
-static const char HELP[] =
+static const char HEAD[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
-    "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
-    "  -o [FORMAT:]FILE picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk\n"
-    "  --view FILE      of the -o behind it: eye x y z, at, up, fov, size (chosen)\n"
-    "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
-    "  --exposure X     factor (automatic)     --flat        no interpolation\n"
-    "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"
-    "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-10)\n"
-    "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
-    "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
-    "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
-    "  --solver cg|jacobi  over the links      --balance default|greedy|none\n"
-    "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
-    "  --two-sided, --two-sided-lamps  --ke radiosity|radiance  --sky B or R,G,B\n"
-    "  --save-links F   those of all pairs     --load-links F  in their place\n"
-    "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
-    "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
-    "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
-    "  --dump patches|links  print these       --quiet       print nothing\n"
-    "  --show light|mesh|owner|level|error|links:PATCH       --help, --version\n"
+    "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n";
+static const char FOOT[] =
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
     "  phr room.obj -o room.png\n"
     "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";
 
-/* The help has two columns; an entry ends with its line or before the next option. */
+/* Prints name, value and words of an option; the words behind so many characters. Returns
+ * the length. */
+static int print_option(const struct option *option, int width, FILE *file)
+{
+    int length = fprintf(file, "%s%s%s", option->name, *option->value ? " " : "",
+                         option->value);
+    int gap = *option->help ? (length < width ? width - length : 0) + 2 : 0;
+    return length + fprintf(file, "%*s%s", gap, "", option->help);
+}
+
+/* Prints all options in two columns; one that is too wide has a line of its own. */
+static void print_options(FILE *file)
+{
+    enum { COLUMN = 40, CALL_LEFT = 14, CALL_RIGHT = 12 }; /* characters */
+    bool right = false;
+    for (int i = 0; i < OPTION_COUNT && OPTIONS[i].set; i++) {
+        fputs(right ? "" : "  ", file);
+        int length = print_option(&OPTIONS[i], right ? CALL_RIGHT : CALL_LEFT, file);
+        right = !right && length < COLUMN;
+        fprintf(file, "%*s%s", right ? COLUMN - length : 0, "", right ? "" : "\n");
+    }
+}
+
 void options_print_help(const char *option, FILE *file)
 {
     const struct option *o = option ? find_option(option) : NULL;
-    const char *at = strstr(HELP, "  -o");
-    size_t length = o ? strlen(option) : 0;
-    while (o && at && (strncmp(at, option, length) != 0 || !strchr(" ,\n", at[length])))
-        at = strpbrk(at + 1, "-");
-    if (!o || !at) {
-        fputs(HELP, file);
+    if (!o || !o->set) {
+        fputs(HEAD, file);
+        print_options(file);
+        fputs(FOOT, file);
         return;
     }
-    const char *end = strstr(at, " --"), *line = strchr(at, '\n');
-    fprintf(file, "  %.*s\n", (int)((end && end < line ? end : line) - at), at);
+    fputs("  ", file);
+    print_option(o, 0, file);
+    fputs("\n", file);
     if (o->high > o->low)
         fprintf(file, "  from %g to %g\n", o->low, o->high);
     if (o->choices)
