@@ -53,26 +53,9 @@ objs() {
 
 # --- pairs without blockers: nothing is in doubt, so that epsilon does not matter ---
 
-# The rows of tools/viewfactors/cases.c as a CSV file: id, no text, the polygons, F.
-awk 'function flush(part, field, at) {
-        if (row == "")
-            return
-        split(row, part, "\"")
-        gsub(/[ {}]/, "", part[5])
-        split(part[5], field, ",")
-        printf "%s,,%d", part[2], field[3]
-        for (at = 5; at < 5 + 3 * field[3]; at++)
-            printf ",%s", field[at]
-        printf ",%d", field[4]
-        for (; at < 5 + 3 * (field[3] + field[4]); at++)
-            printf ",%s", field[at]
-        print "," field[2]
-    }
-    BEGIN { print "id,,polygons,F" }
-    /^    {"[A-Z][0-9]/ { flush(); row = "" }
-    /^};/ { flush(); exit }
-    /^ *{"[A-Z][0-9]/ || row != "" { row = row $0 }' tools/viewfactors/cases.c \
-    >"$work/cases.csv"
+# The rows of the table of --validate as a CSV file: id, no text, the polygons, F.
+{ echo id,,polygons,F; sed 's/", "[^"]*"/,/; s/[{}" ]//g; s/,$//' \
+    tools/viewfactors/cases.inc; } >"$work/cases.csv"
 objs "$work/cases.csv" 0 >"$work/plain"
 check "81 pairs" [ "$(wc -l <"$work/plain")" -eq 81 ]
 while read -r id exact; do

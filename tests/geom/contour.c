@@ -1,11 +1,10 @@
-/* Tests of geom/contour.h: the table of exact values (viewfactors/cases.c), closed forms
- * of rectangles in any place, and identities: rows of closed solids add up to 1, parts
- * add up to the whole, no order of arguments, no motion and no unit matters. */
+/* Tests of geom/contour.h: closed forms of rectangles in any place, and identities: rows
+ * of closed solids add up to 1, parts add up to the whole, no order of arguments, no
+ * motion and no unit matters. (The table of exact values is tests/55-validate.sh's.) */
 #include "geom/contour.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
-#include "tools/viewfactors/cases.h"
 #include "geom/gauss.h"
 
 static const long double LONG_PI = 3.14159265358979323846264338327950288L;
@@ -54,23 +53,6 @@ static void tally_ok(const struct tally *tally, const char *name)
 {
     tap_ok(tally->worst <= 1.0, "%s, %d pairs: off by %.2g of the tolerance", name,
            tally->count, tally->worst);
-}
-
-/* --- the table --- */
-
-static void test_table(void)
-{
-    for (int i = 0; i < PAIR_CASE_COUNT; i++) {
-        const struct pair_case *pair = &PAIR_CASES[i];
-        const struct vec3 *a = pair->corner[0], *b = pair->corner[1];
-        double area = polygon_area(a, pair->count[0]);
-        double value = polygon_exchange(a, pair->count[0], b, pair->count[1]);
-        struct tally tally = {0.0, 0};
-        tally_add(&tally, value, pair->factor * area,
-                  fmin(area, polygon_area(b, pair->count[1])));
-        tap_ok(tally.worst <= 1.0, "%s: F = %.12g, off by %.1e", pair->id, value / area,
-               value / area - pair->factor);
-    }
 }
 
 /* --- rectangles in closed form --- */
@@ -608,7 +590,6 @@ static void test_gauss(void)
 int main(void)
 {
     test_gauss();
-    test_table();
     test_catalogue();
     test_rectangles();
     test_hinges();

@@ -20,30 +20,57 @@
 #include <stdlib.h>
 
 #include "geom/alloc.h"
+#include "geom/contour.h"
 #include "geom/lambert.h"
 #include "rad/beyond/patch_exchange.h"
-#include "tools/viewfactors/cases.h"
-#include "geom/contour.h"
 
-/* --- a case, prepared --- */
+/* --- cases --- */
 
+enum { CASE_CORNERS = 4 };
+
+/* Two polygons and the form factor from the first to the second. */
+struct pair_case {
+    const char *id, *text;
+    double polygons[2 * (1 + 3 * CASE_CORNERS)]; /* of each the number of its corners, and
+                                                    these, seen counter-clockwise */
+    double factor; /* 1; exact in all digits */
+};
+
+/* P to Z were computed with 30 digits and more: parallel (P), perpendicular (L) and
+ * hinged pairs (W), slivers and needles (S), general pairs (G), far ones (F), and pairs
+ * without exchange (Z). E are closed forms of Howell's catalogue (C-11: aligned parallel
+ * rectangles; C-14: perpendicular ones with a common edge) and their sums and differences
+ * over rectangles; the tilted triangles are integrals over both by Gauss' rule of 12 x 12
+ * points each, with 25 digits. */
+static const struct pair_case PAIR_CASES[] = {
+#include "tools/viewfactors/cases.inc"
+};
+enum { PAIR_CASE_COUNT = sizeof PAIR_CASES / sizeof PAIR_CASES[0] };
+
+/* A case in the unit cube. */
 struct prepared {
     const struct pair_case *known;
-    struct vec3 corner[2][CASE_CORNERS]; /* in the unit cube */
+    int32_t count[2];
+    struct vec3 corner[2][CASE_CORNERS];
     int facets[2];
     struct facet facet[2][CASE_CORNERS - 2];
     double area;  /* of the first polygon */
     double apart; /* distance of the centres in sums of the radii */
 };
 
-static double extent_of(const struct pair_case *known)
+/* Takes the corners, from the first one on. Returns the largest coordinate. */
+static double take_corners(struct prepared *pair)
 {
+    const double *at = pair->known->polygons, *first = at + 1;
     double extent = 0.0;
-    for (int side = 0; side < 2; side++)
-        for (int32_t k = 0; k < known->count[side]; k++) {
-            struct vec3 r = vec3_sub(known->corner[side][k], known->corner[0][0]);
+    for (int side = 0; side < 2; side++) {
+        pair->count[side] = (int32_t)*at++;
+        for (int32_t k = 0; k < pair->count[side]; k++, at += 3) {
+            struct vec3 r = {at[0] - first[0], at[1] - first[1], at[2] - first[2]};
             extent = fmax(extent, fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z))));
+            pair->corner[side][k] = r;
         }
+    }
     return extent;
 }
 
@@ -69,21 +96,20 @@ static struct prepared pair_make(const struct pair_case *known)
 {
     struct prepared pair = {.known = known};
     int exponent;
-    frexp(extent_of(known), &exponent);
-    for (int side = 0; side < 2; side++) {
-        for (int32_t k = 0; k < known->count[side]; k++) {
-            struct vec3 r = vec3_sub(known->corner[side][k], known->corner[0][0]);
-            pair.corner[side][k] = vec3_scale(r, ldexp(1.0, -exponent));
-        }
-        pair.facets[side] = known->count[side] - 2;
-        for (int k = 0; k < pair.facets[side]; k++)
-            pair.facet[side][k] = facet_of(pair.corner[side], k);
-    }
     double radius[2];
-    struct vec3 a = centre_of(pair.corner[0], known->count[0], &radius[0]);
-    struct vec3 b = centre_of(pair.corner[1], known->count[1], &radius[1]);
+    frexp(take_corners(&pair), &exponent);
+    for (int side = 0; side < 2; side++) {
+        struct vec3 *corner = pair.corner[side];
+        for (int32_t k = 0; k < pair.count[side]; k++)
+            corner[k] = vec3_scale(corner[k], ldexp(1.0, -exponent));
+        pair.facets[side] = pair.count[side] - 2;
+        for (int k = 0; k < pair.facets[side]; k++)
+            pair.facet[side][k] = facet_of(corner, k);
+    }
+    struct vec3 a = centre_of(pair.corner[0], pair.count[0], &radius[0]);
+    struct vec3 b = centre_of(pair.corner[1], pair.count[1], &radius[1]);
     pair.apart = vec3_length(vec3_sub(b, a)) / (radius[0] + radius[1]);
-    pair.area = polygon_area(pair.corner[0], known->count[0]);
+    pair.area = polygon_area(pair.corner[0], pair.count[0]);
     return pair;
 }
 
@@ -146,16 +172,15 @@ static const struct estimate ESTIMATES[METHODS] = {
      by_polygon,
      3,
      {{0.5, 0.032, 1.0}, {1.0, 0.025, 1.0}, {3.0, 0.0025, 1.0}}},
-    {"exact", NULL, 1, {{0.0, 1e-6, 1e-9}}},
+    {"exact", NULL, 1, {{0.0, 1e-6, 1e-11}}},
 };
 
 /* The form factor from the first polygon to the second. */
 static double factor_by(const struct estimate *estimate, const struct prepared *pair)
 {
-    const struct pair_case *known = pair->known;
     if (!estimate->exchange)
-        return polygon_exchange(pair->corner[0], known->count[0], pair->corner[1],
-                                known->count[1]) / pair->area;
+        return polygon_exchange(pair->corner[0], pair->count[0], pair->corner[1],
+                                pair->count[1]) / pair->area;
     double sum = 0.0;
     for (int i = 0; i < pair->facets[0]; i++)
         for (int j = 0; j < pair->facets[1]; j++)
@@ -305,6 +330,33 @@ static bool print_pairs(FILE *file)
 }
 
 /* --- points --- */
+
+/* Illuminances of CIE 171:2006, 5.3: at a point of a room of 4 x 4 x 3 m, by a light of 1
+ * x 1 m and 1000 cd/m^2 in the middle of its ceiling. */
+struct point_case {
+    const char *text;
+    struct vec3 x;      /* m */
+    struct vec3 normal; /* 1 */
+    double exact;       /* lx */
+    double printed;     /* lx, as the report rounds it */
+};
+
+static const struct point_case POINT_CASES[] = {
+    {"wall, z = 2.75", {2, 0, 2.75}, {0, 1, 0}, 32.676898014391845, 32.68},
+    {"wall, z = 2.25", {2, 0, 2.25}, {0, 1, 0}, 75.19392456629544, 75.09},
+    {"wall, z = 1.75", {2, 0, 1.75}, {0, 1, 0}, 81.32317212494463, 81.38},
+    {"wall, z = 1.25", {2, 0, 1.25}, {0, 1, 0}, 69.06062701304937, 69.12},
+    {"wall, z = 0.75", {2, 0, 0.75}, {0, 1, 0}, 53.4035311081542, 53.41},
+    {"wall, z = 0.25", {2, 0, 0.25}, {0, 1, 0}, 40.001852019851064, 39.90},
+    {"floor, y = 0.25", {2, 0.25, 0}, {0, 0, 1}, 61.424098538461486, 61.27},
+    {"floor, y = 0.75", {2, 0.75, 0}, {0, 0, 1}, 79.25515731623122, 79.18},
+    {"floor, y = 1.25", {2, 1.25, 0}, {0, 0, 1}, 95.66727633333511, 95.52},
+    {"floor, y = 1.75", {2, 1.75, 0}, {0, 0, 1}, 105.77824217629438, 105.89},
+};
+enum { POINT_CASE_COUNT = sizeof POINT_CASES / sizeof POINT_CASES[0] };
+
+static const struct vec3 CIE_LIGHT[4] = {
+    {1.5, 1.5, 3}, {1.5, 2.5, 3}, {2.5, 2.5, 3}, {2.5, 1.5, 3}};
 
 /* The error that geom/lambert.h states. */
 static const double POINT_BOUND = 1e-9;
