@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "geom/little.h"
+
 #define HASH_START UINT64_C(14695981039346656037)
 
 /* Goes on with a hash: that of the bytes before, and of `count` more. */
@@ -15,6 +17,17 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count
     const uint8_t *at = bytes;
     for (size_t i = 0; i < count; i++)
         hash = (hash ^ at[i]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+/* The same for `count` numbers, on any machine. */
+static inline uint64_t hash_doubles(uint64_t hash, const double *values, int count)
+{
+    uint8_t bytes[8];
+    for (int i = 0; i < count; i++) {
+        little_put_double(bytes, values[i]);
+        hash = hash_bytes(hash, bytes, sizeof bytes);
+    }
     return hash;
 }
 

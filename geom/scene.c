@@ -12,7 +12,6 @@
 #include "geom/alloc.h"
 #include "geom/doubles.h"
 #include "geom/hash.h"
-#include "geom/little.h"
 
 static const double CLAMPED_REFLECTANCE = 0.999;
 
@@ -413,16 +412,6 @@ double scene_entering_power(const struct scene *scene)
 double scene_area_unit(const struct scene *scene)
 {
     return ldexp(1.0, 2 * scene->place.exponent);
-}
-
-static uint64_t hash_doubles(uint64_t hash, const double *values, int count)
-{
-    uint8_t bytes[8];
-    for (int i = 0; i < count; i++) {
-        little_put_double(bytes, values[i]);
-        hash = hash_bytes(hash, bytes, sizeof bytes);
-    }
-    return hash;
 }
 
 uint64_t scene_hash(const struct scene *scene)

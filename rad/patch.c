@@ -9,7 +9,6 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "geom/little.h"
 
 struct forest *forest_create(const struct scene *scene)
 {
@@ -125,13 +124,6 @@ int32_t *forest_order(const struct forest *forest)
 
 /* --- the checksum --- */
 
-static uint64_t hash_number(uint64_t hash, double value)
-{
-    uint8_t bytes[8];
-    little_put_double(bytes, value);
-    return hash_bytes(hash, bytes, sizeof bytes);
-}
-
 /* One bit for each patch, depth first, 1 = split; eight to a byte, the first in the
  * lowest place. */
 static uint64_t hash_splits(uint64_t hash, const struct forest *forest, int32_t root)
@@ -154,8 +146,8 @@ uint64_t forest_checksum(const struct forest *forest)
     for (int32_t root = 0; root < forest->root_count; root++) {
         hash = hash_splits(hash, forest, root);
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-            for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
-                hash = hash_number(hash, forest->radiosity[p].band[c]);
+            if (patch_is_leaf(&forest->patches[p]))
+                hash = hash_doubles(hash, forest->radiosity[p].band, BANDS);
     }
     return hash;
 }
