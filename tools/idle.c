@@ -53,8 +53,7 @@ static bool add_idle(const struct options *options, struct names *names)
         enum output_format format = options->outputs[i].format;
         bool picture = !format_is_mesh(format);
         pictures = pictures || picture;
-        colours = colours || format == FORMAT_PPM || format == FORMAT_PNG ||
-                  format == FORMAT_PLY;
+        colours = colours || format_has_tone(format);
         light = light || !picture || shows_light(options);
     }
     if (!pictures)

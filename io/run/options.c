@@ -37,26 +37,30 @@ struct argument {
     struct error *error;
 };
 
-/* A format of outputs: its name is a prefix and a suffix, too. target_refuse() lists
- * them. */
+/* A format of outputs: its name is a prefix and a suffix, too. */
 struct format {
     const char *name;
-    bool is_mesh;
+    bool is_mesh, has_tone;
 };
 
 static const struct format FORMATS[] = {
-    [FORMAT_PPM] = {"ppm", false},
-    [FORMAT_PFM] = {"pfm", false},
-    [FORMAT_PNG] = {"png", false},
-    [FORMAT_HDR] = {"hdr", false},
-    [FORMAT_PLY] = {"ply", true},
-    [FORMAT_VTK] = {"vtk", true},
+    [FORMAT_PPM] = {"ppm", false, true},
+    [FORMAT_PFM] = {"pfm", false, false},
+    [FORMAT_PNG] = {"png", false, true},
+    [FORMAT_HDR] = {"hdr", false, false},
+    [FORMAT_PLY] = {"ply", true, true},
+    [FORMAT_VTK] = {"vtk", true, false},
 };
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
 
 bool format_is_mesh(enum output_format format)
 {
     return FORMATS[format].is_mesh;
+}
+
+bool format_has_tone(enum output_format format)
+{
+    return FORMATS[format].has_tone;
 }
 
 /* Returns the length of "FORMAT:" at the start of an argument, or 0. */
@@ -95,10 +99,15 @@ bool options_show(const struct options *options, int view)
 
 bool target_refuse(const char *argument, struct error *error)
 {
-    return error_set(error, EXIT_USAGE,
-                     "-o %s: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
-                     "or be FORMAT:FILE, as in ppm:FILE",
-                     argument);
+    char list[200] = "";
+    for (int i = 0, at = 0; i < FORMAT_COUNT; i++)
+        at += snprintf(list + at, sizeof list - (size_t)at, "%s.%s",
+                       i == 0                  ? ""
+                       : i == FORMAT_COUNT - 1 ? " or "
+                                               : ", ",
+                       FORMATS[i].name);
+    return error_set(error, EXIT_USAGE, "-o %s: the name must end in %s, or be "
+                     "FORMAT:FILE, as in ppm:FILE", argument, list);
 }
 
 /* --- values --- */

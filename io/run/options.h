@@ -86,6 +86,9 @@ const char *options_light_settings(const struct options *options);
 /* True if the format is a mesh, false if it is a picture. */
 bool format_is_mesh(enum output_format format);
 
+/* True if its colours are 8-bit codes, which --exposure changes. */
+bool format_has_tone(enum output_format format);
+
 /* Reads FORMAT:FILE, or a file whose suffix may be a format; its view is 0. */
 struct target target_parse(const char *argument);
 
