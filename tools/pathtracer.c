@@ -17,23 +17,20 @@
  * use the mean of both, and cannot show errors much below `noise`.
  *
  * Seeds are the numbers of pixels and leaves, which are dealt to the ranks in turn: files
- * do not depend on the number of ranks. Each rank reads the input for itself. */
+ * do not depend on the number of ranks. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 #include "io/picture/imagefile.h"
-#include "io/picture/texture.h"
 #include "io/picture/viewpoint.h"
-#include "io/run/options.h"
-#include "io/run/files.h"
-#include "io/scene/obj.h"
-#include "io/scene/ply.h"
 #include "io/scene/text.h"
 #include "mpi/picture.h"
 #include "tools/compare.h"
+#include "tools/input.h"
 #include "tools/pixel.h"
 
 enum { SAMPLES = 64, SAMPLES_MAX = 1 << 24, HALVES = 2 };
@@ -42,46 +39,44 @@ static const char USAGE[] = "usage: pathtracer SCENE [--leaves SOLUTION.ply] "
                             "[--samples N] [options of phr] -o FILE...";
 
 struct tracing {
-    struct comm comm;
-    struct options options;
+    struct run *run;    /* borrowed */
     const char *leaves; /* path of a solution, or NULL */
     int samples;        /* paths a pixel, or a leaf */
-    struct scene *scene;
-    struct octree *octree;
-    struct camera camera;
     struct solution_mesh solution; /* of --leaves */
     struct pathtracer pathtracer;
-    struct error error;
 };
 
 /* --- input --- */
 
-/* Takes --leaves and --samples out of the arguments. Returns the number of the others. */
-static int take_own(struct tracing *run, int argc, char **argv)
+/* Takes --leaves and --samples out of the arguments. */
+static bool take_own(struct tracing *tracing, int *argc, char **argv)
 {
+    struct run *run = tracing->run;
     double samples = SAMPLES;
     int kept = 1;
-    for (int i = 1; i < argc; i++) {
+    for (int i = 1; i < *argc; i++) {
         bool leaves = strcmp(argv[i], "--leaves") == 0;
         if (!leaves && strcmp(argv[i], "--samples") != 0)
             argv[kept++] = argv[i];
-        else if (++i >= argc)
+        else if (++i >= *argc)
             error_set(&run->error, EXIT_USAGE, "%s needs a value", argv[i - 1]);
         else if (leaves)
-            run->leaves = argv[i];
+            tracing->leaves = argv[i];
         else if (!text_is_number(argv[i], &samples) || !(samples >= HALVES) ||
                  samples > SAMPLES_MAX)
             error_set(&run->error, EXIT_USAGE, "--samples: %s is not between %d and %d",
                       argv[i], HALVES, SAMPLES_MAX);
     }
-    run->samples = run->error.code == EXIT_DONE ? (int)samples : 0;
-    return kept;
+    *argc = kept;
+    tracing->samples = run->error.code == EXIT_DONE ? (int)samples : 0;
+    return run->error.code == EXIT_DONE;
 }
 
 /* Checks the outputs: there has to be one, and meshes need --leaves and it needs a
  * mesh. */
-static bool check_outputs(struct tracing *run)
+static bool check_outputs(struct tracing *tracing)
 {
+    struct run *run = tracing->run;
     bool meshes = false;
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
@@ -94,98 +89,63 @@ static bool check_outputs(struct tracing *run)
         return error_set(&run->error, EXIT_USAGE, "%s", USAGE);
     if (run->options.view_count > 1)
         return error_set(&run->error, EXIT_USAGE, "one view at a time");
-    if (meshes != (run->leaves != NULL))
+    if (meshes != (tracing->leaves != NULL))
         return error_set(&run->error, EXIT_USAGE, "-o FILE.ply and --leaves go together");
     return true;
 }
 
-static bool read_scene(struct tracing *run)
-{
-    struct obj_repairs read = {.mean_of = texture_mean};
-    struct scene_repairs prepared = {0};
-    const char *path = run->options.scene;
-    struct source source;
-    if (source_open(&source, path, &run->error))
-        run->scene = ply_is_meant(&source) ? ply_read(&source, &run->error)
-                                           : obj_of_source(&source, &read, &run->error);
-    source_close(&source);
-    if (!run->scene)
-        return false;
-    if (run->options.ke == KE_RADIANCE)
-        scene_take_radiances(run->scene);
-    run->scene->two_sided = run->options.two_sided;
-    run->scene->two_sided_lamps = run->options.two_sided_lamps;
-    if (!scene_prepare(run->scene, &prepared, &run->error))
-        return false;
-    return scene_emitted_power(run->scene) > 0.0 ||
-           error_set(&run->error, EXIT_USAGE, "%s: nothing emits light", path);
-}
-
 /* Reads the solution of --leaves. */
-static bool read_leaves(struct tracing *run)
+static bool read_leaves(struct tracing *tracing)
 {
-    if (!run->leaves)
+    struct run *run = tracing->run;
+    if (!tracing->leaves)
         return true;
     struct source source;
-    bool good = source_open(&source, run->leaves, &run->error) &&
-                solution_mesh_read(&run->solution, &source, &run->error);
+    bool good = source_open(&source, tracing->leaves, &run->error) &&
+                solution_mesh_read(&tracing->solution, &source, &run->error);
     source_close(&source);
     if (!good)
         return false;
-    for (int64_t i = 0; i < run->solution.count; i++) {
-        uint32_t root = run->solution.leaves[i].id.root;
+    for (int64_t i = 0; i < tracing->solution.count; i++) {
+        uint32_t root = tracing->solution.leaves[i].id.root;
         if (root >= (uint32_t)scene_root_count(run->scene) ||
             !(scene_root_area(run->scene, (int32_t)root) > 0.0))
             return error_set(&run->error, EXIT_USAGE, "%s: not a solution of %s",
-                             run->leaves, run->options.scene);
-    }
-    return true;
-}
-
-static bool read_camera(struct tracing *run)
-{
-    const struct options *options = &run->options;
-    int width = options->width > 0 ? options->width : CAMERA_SIZE;
-    int height = options->width > 0 ? options->height : CAMERA_SIZE;
-    if (options->view_count == 0)
-        run->camera = viewpoint_choose(run->scene, run->octree, NULL, width, height);
-    else if (!camera_read(options->views[0], &run->camera, &run->error))
-        return false;
-    if (options->width > 0) {
-        run->camera.width = width;
-        run->camera.height = height;
+                             tracing->leaves, run->options.scene);
     }
     return true;
 }
 
 /* Collective. */
-static bool read_all(struct tracing *run)
+static bool read_all(struct tracing *tracing)
 {
-    if (read_scene(run) && read_leaves(run)) {
-        run->octree = octree_create(run->scene->triangles, run->scene->planes,
-                                    run->scene->input_count);
-        read_camera(run);
-    }
-    if (run->comm.rank == 0 && run->error.code == EXIT_DONE &&
-        files_check(&run->options, &run->error))
-        files_probe(&run->options, &run->error);
-    return comm_agree(&run->comm, &run->error);
+    struct run *run = tracing->run;
+    if (!input_broadcast(run))
+        return false;
+    if (run->stored)
+        error_set(&run->error, EXIT_USAGE, "%s: a solution, and no scene",
+                  run->options.scene);
+    else if (read_leaves(tracing) && run->options.view_count == 0)
+        *run->cameras = viewpoint_choose(run->scene, run->octree, NULL,
+                                         run->cameras->width, run->cameras->height);
+    return run_agree(run);
 }
 
 /* --- tracing --- */
 
 /* Collective. Returns the picture on rank 0, top scanline first. */
-static float *trace_picture(const struct tracing *run)
+static float *trace_picture(const struct tracing *tracing)
 {
-    int width = run->camera.width, height = run->camera.height;
+    const struct run *run = tracing->run;
+    int width = run->cameras->width, height = run->cameras->height;
     size_t length = (size_t)width * BANDS;
     int scanlines = (height + run->comm.size - 1) / run->comm.size;
     float *own = alloc_array((size_t)scanlines * length, sizeof *own), *at = own;
     for (int y = run->comm.rank; y < height; y += run->comm.size)
-        for (int x = 0; x < width; x++) {
+        for (int x = 0; x < width && !stop_is_asked(); x++) {
             uint64_t seed = (uint64_t)y * IMAGE_SIZE_MAX + (uint64_t)x;
-            struct rgb b = pathtracer_pixel(&run->pathtracer, &run->camera, x, y,
-                                            run->samples, seed);
+            struct rgb b = pathtracer_pixel(&tracing->pathtracer, run->cameras, x, y,
+                                            tracing->samples, seed);
             for (int c = 0; c < BANDS; c++)
                 *at++ = (float)b.band[c];
         }
@@ -194,18 +154,20 @@ static float *trace_picture(const struct tracing *run)
 
 /* Collective. Returns two estimates of rho H for each leaf, HALVES * BANDS floats, on
  * rank 0. */
-static float *trace_leaves(const struct tracing *run)
+static float *trace_leaves(const struct tracing *tracing)
 {
-    int64_t count = run->solution.count, size = run->comm.size;
+    const struct run *run = tracing->run;
+    int64_t count = tracing->solution.count, size = run->comm.size;
     size_t length = HALVES * BANDS;
     float *own = alloc_array((size_t)(count / size + 1) * length, sizeof *own), *at = own;
-    for (int64_t i = run->comm.rank; i < count; i += size) {
-        struct patch_id id = run->solution.leaves[i].id;
+    for (int64_t i = run->comm.rank; i < count && !stop_is_asked(); i += size) {
+        struct patch_id id = tracing->solution.leaves[i].id;
         struct triangle part = pathtracer_part(id);
         uint64_t seed = id_number(id) << 1;
         for (uint64_t half = 0; half < HALVES; half++) {
-            struct rgb h = pathtracer_reflected(&run->pathtracer, (int32_t)id.root, &part,
-                                                run->samples / HALVES, seed + half);
+            struct rgb h =
+                pathtracer_reflected(&tracing->pathtracer, (int32_t)id.root, &part,
+                                     tracing->samples / HALVES, seed + half);
             for (int c = 0; c < BANDS; c++)
                 *at++ = (float)h.band[c];
         }
@@ -267,15 +229,15 @@ static double over(double a, double b)
 }
 
 /* Prints the norms over all leaves that reflect. */
-static void print_norms(const struct tracing *run, const float *halves)
+static void print_norms(const struct tracing *tracing, const float *halves)
 {
-    const struct solution_mesh *solution = &run->solution;
+    const struct solution_mesh *solution = &tracing->solution;
     struct norms norms = {.count = 0};
     norms.offs = alloc_array((size_t)solution->count, sizeof *norms.offs);
     for (int64_t i = 0; i < solution->count; i++) {
         const struct solution_leaf *leaf = &solution->leaves[i];
         const struct material *material =
-            scene_root_material(run->scene, (int32_t)leaf->id.root);
+            scene_root_material(tracing->run->scene, (int32_t)leaf->id.root);
         if (rgb_sum(material->reflectance) > 0.0)
             add_leaf(&norms, leaf, material, halves + i * HALVES * BANDS);
     }
@@ -291,13 +253,14 @@ static void print_norms(const struct tracing *run, const float *halves)
 /* --- output --- */
 
 /* Writes the leaves with E + rho H in place of their radiosities. */
-static void write_leaves(struct tracing *run, const float *halves, const char *path)
+static void write_leaves(struct tracing *tracing, const float *halves, const char *path)
 {
-    size_t count = (size_t)run->solution.count;
+    struct run *run = tracing->run;
+    size_t count = (size_t)tracing->solution.count;
     struct rgb *map = alloc_array(count, sizeof *map);
     float *colours = alloc_array(count, BANDS * sizeof *colours);
     for (size_t i = 0; i < count; i++) {
-        int32_t root = (int32_t)run->solution.leaves[i].id.root;
+        int32_t root = (int32_t)tracing->solution.leaves[i].id.root;
         const float *half = halves + i * HALVES * BANDS;
         map[i] = scene_root_material(run->scene, root)->emission;
         for (int c = 0; c < BANDS; c++) {
@@ -308,15 +271,16 @@ static void write_leaves(struct tracing *run, const float *halves, const char *p
     double exposure = run->options.exposure;
     if (!(exposure > 0.0))
         exposure = tone_automatic(colours, (int64_t)count);
-    solution_write(&run->solution, map, 1.0 / exposure, path, &run->error);
+    solution_write(&tracing->solution, map, 1.0 / exposure, path, &run->error);
     alloc_free(colours);
     alloc_free(map);
 }
 
-static void write_picture(struct tracing *run, float *picture,
+static void write_picture(struct tracing *tracing, float *picture,
                           const struct target *target)
 {
-    struct image image = {run->camera.width, run->camera.height, picture};
+    struct run *run = tracing->run;
+    struct image image = {run->cameras->width, run->cameras->height, picture};
     double exposure = run->options.exposure;
     if (!(exposure > 0.0))
         exposure = tone_automatic(picture, (int64_t)image.width * image.height);
@@ -325,75 +289,59 @@ static void write_picture(struct tracing *run, float *picture,
 }
 
 /* Collective. Prints the rays of all ranks, and the seconds of the slowest. */
-static void report(const struct tracing *run, int64_t samples, double seconds)
+static void report(const struct tracing *tracing, int64_t samples, double seconds)
 {
-    int64_t rays = run->pathtracer.counts->rays;
+    struct run *run = tracing->run;
+    int64_t rays = tracing->pathtracer.counts->rays;
     comm_add(&run->comm, &rays, 1);
     seconds = comm_largest(&run->comm, seconds);
-    if (run->comm.rank == 0 && !run->options.quiet)
-        fprintf(stderr, "pathtracer: %lld paths, %lld rays, %.2f s, %.3f million/s\n",
-                (long long)samples, (long long)rays, seconds,
-                1e-6 * (double)rays / seconds);
+    run_say(run, "%lld paths, %lld rays, %.2f s, %.3f million/s", (long long)samples,
+            (long long)rays, seconds, 1e-6 * (double)rays / seconds);
 }
 
 /* Collective. Traces once for all pictures, once for all meshes, and writes on rank 0. */
-static void trace_and_write(struct tracing *run)
+static void trace_and_write(struct tracing *tracing)
 {
+    struct run *run = tracing->run;
     double start = comm_seconds();
-    int64_t pixels = 0, leaves = run->solution.count;
-    float *picture = NULL, *halves = run->leaves ? trace_leaves(run) : NULL;
+    int64_t pixels = 0, leaves = tracing->solution.count;
+    float *picture = NULL, *halves = tracing->leaves ? trace_leaves(tracing) : NULL;
     for (int i = 0; i < run->options.output_count; i++)
         if (!format_is_mesh(run->options.outputs[i].format))
-            pixels = (int64_t)run->camera.width * run->camera.height;
+            pixels = (int64_t)run->cameras->width * run->cameras->height;
     if (pixels > 0)
-        picture = trace_picture(run);
-    report(run, (pixels + leaves) * run->samples, comm_seconds() - start);
-    for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++) {
+        picture = trace_picture(tracing);
+    report(tracing, (pixels + leaves) * tracing->samples, comm_seconds() - start);
+    bool writes = run_goes_on(run) && run->comm.rank == 0;
+    for (int i = 0; i < run->options.output_count && writes; i++) {
         const struct target *target = &run->options.outputs[i];
         if (format_is_mesh(target->format))
-            write_leaves(run, halves, target->path);
+            write_leaves(tracing, halves, target->path);
         else
-            write_picture(run, picture, target);
+            write_picture(tracing, picture, target);
     }
-    if (halves && run->comm.rank == 0 && !run->options.quiet)
-        print_norms(run, halves);
+    if (halves && writes && !run->options.quiet)
+        print_norms(tracing, halves);
     alloc_free(halves);
     alloc_free(picture);
 }
 
-static void release(struct tracing *run)
-{
-    pathtracer_free(&run->pathtracer);
-    solution_mesh_free(&run->solution);
-    octree_destroy(run->octree);
-    scene_destroy(run->scene);
-    options_free(&run->options);
-}
-
 int main(int argc, char **argv)
 {
-    struct tracing run = {.leaves = NULL};
-    comm_start(&run.comm, &argc, &argv);
-    argc = take_own(&run, argc, argv);
-    bool parsed = run.error.code == EXIT_DONE &&
-                  options_parse(&run.options, argc, argv, &run.error) &&
-                  (run.options.help || check_outputs(&run));
+    error_program = "pathtracer";
+    struct run run = {0};
+    struct tracing tracing = {.run = &run};
+    bool parsed = run_start(&run, &argc, &argv) && take_own(&tracing, &argc, argv) &&
+                  run_parse(&run, argc, argv) &&
+                  (run.options.help || check_outputs(&tracing));
     if (parsed && run.options.help) {
         if (run.comm.rank == 0)
             puts(USAGE);
-    } else if (parsed && read_all(&run)) {
-        run.pathtracer = pathtracer_make(run.scene, run.octree);
-        trace_and_write(&run);
+    } else if (parsed && read_all(&tracing)) {
+        tracing.pathtracer = pathtracer_make(run.scene, run.octree);
+        trace_and_write(&tracing);
     }
-    comm_agree(&run.comm, &run.error);
-    if (run.error.code != EXIT_DONE && run.comm.rank == 0)
-        fprintf(stderr, "pathtracer: %s\n", run.error.text);
-    release(&run);
-    comm_stop(&run.comm);
-    if (alloc_balance() != 0) {
-        fprintf(stderr, "pathtracer: BUG: %lld blocks of memory were not freed\n",
-                (long long)alloc_balance());
-        return EXIT_FAILED;
-    }
-    return run.error.code;
+    pathtracer_free(&tracing.pathtracer);
+    solution_mesh_free(&tracing.solution);
+    return run_end(&run);
 }
