@@ -102,7 +102,7 @@ struct gathered {
     double closing; /* largest part, of a band, of the light that leaves surfaces of a
                        closed scene and is lost or made; 0: it is open */
     double error;   /* of the leaves, relative RMS of reflected radiosity */
-    double median, percentile_90; /* by area, of errors of leaves relative to their own
+    double median, worst_tenth; /* by area, of errors of leaves relative to their own
                                      light, 1 at most */
     double by_rays; /* part of the error from the choice of rays */
     double by_mesh; /* part from B varying within leaves; the squares of both parts sum to

@@ -88,7 +88,7 @@ static bool touches(const struct run *run, int32_t root, uint64_t seed)
  * modelled from both sides, that meets nothing. */
 static double share_touching(const struct run *run, int32_t lamp)
 {
-    struct model model = {.scene = run->scene, .octree = run->octree}; /* its own counts */
+    struct model model = {.scene = run->scene, .octree = run->octree};
     bool single = false;
     int count = 0;
     for (int i = 0; i < LAMP_POINTS; i++) {

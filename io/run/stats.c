@@ -54,9 +54,9 @@ void stats_print(const struct stats *stats, FILE *file)
                 stats->gathered.checked > 0 ? "measured" : "estimated", stats->epsilon);
     if (stats->gathered.error > 0.0)
         fprintf(file,
-                "            %.2g %% of their own light in the median, more than %.3g %% "
-                "for a tenth\n",
-                100.0 * stats->gathered.median, 100.0 * stats->gathered.percentile_90);
+                "            %.2g %% of their own light in the median, a tenth exceeds "
+                "%.3g %%\n",
+                100.0 * stats->gathered.median, 100.0 * stats->gathered.worst_tenth);
     fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
 }
 
@@ -126,12 +126,12 @@ static void write_counts(FILE *file, const struct stats *stats)
             "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64
             ", \"exact\": %" PRId64 ", \"terms\": %" PRId64 ", \"looks\": %" PRId64
             ", \"split\": %" PRId64 ", \"pixels\": %" PRId64 ", \"closing\": %.17g"
-            ", \"error\": %.17g, \"median\": %.17g, \"percentile_90\": %.17g"
+            ", \"error\": %.17g, \"median\": %.17g, \"worst_tenth\": %.17g"
             ", \"by_rays\": %.17g, \"by_mesh\": %.17g},\n",
             stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
             stats->gathered.terms, stats->gathered.looks, stats->gathered.split,
             stats->gathered.pixels, stats->gathered.closing, stats->gathered.error,
-            stats->gathered.median, stats->gathered.percentile_90,
+            stats->gathered.median, stats->gathered.worst_tenth,
             stats->gathered.by_rays, stats->gathered.by_mesh);
     fprintf(file,
             "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": "

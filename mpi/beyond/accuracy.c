@@ -67,7 +67,7 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
     for (int64_t p = 0; p < solver->model.forest->count; p++)
         beyond->answer->error[p] *= (float)larger;
     beyond->answer->counts.median *= larger;
-    beyond->answer->counts.percentile_90 *= larger;
+    beyond->answer->counts.worst_tenth *= larger;
 }
 
 /* --- limits --- */

@@ -253,7 +253,7 @@ static void rank_errors(const struct gathering *g, const struct rgb *variance,
         if (passed <= 0.5 * area)
             counts->median = errors[k].relative;
         if (passed <= 0.9 * area)
-            counts->percentile_90 = errors[k].relative;
+            counts->worst_tenth = errors[k].relative;
     }
     alloc_free(errors);
 }

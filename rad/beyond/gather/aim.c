@@ -10,8 +10,8 @@
  *     F  sum of V K / sum of K  times its light:
  *
  * exactly F where all of it is seen, and 0 where nothing is. Of a bright patch that is
- * far away F is the mean of K times its area. Of a node with several senders each segment chooses
- * one by its power.
+ * far away F is the mean of K times its area. Of a node with several senders each
+ * segment chooses one by its power.
  *
  * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
  * a bright patch which is aimed at is put aside (rays.c). */
@@ -218,7 +218,7 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by light that is
- * seen. Those that are near, and bring a good part of what a segment is for, are exact.
+ * seen. Those that are near, and bring a good part of the light of a segment, are exact.
  * Returns the light that each segment is for, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
@@ -237,7 +237,8 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *at = &cuts->nodes[cut.first + i];
         const struct sender_node *node = &senders->nodes[at->node];
-        if (aims->offers[i].worth * segments >= FOR_EXACT * all && is_near_sender(node, &own))
+        if (aims->offers[i].worth * segments >= FOR_EXACT * all &&
+            is_near_sender(node, &own))
             aims->offers[i] = exact_offer(r, senders, node);
         sum += aims->offers[i].worth;
         found += aims->offers[i].worth * at->found;

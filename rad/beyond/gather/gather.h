@@ -40,8 +40,8 @@ struct final_gather *final_gather_create(struct model *model, int rays,
                                          const uint8_t *cut);
 void final_gather_destroy(struct final_gather *gather); /* NULL: none */
 
-/* Finds the bright patches anew, and what rays meet, by the radiosities of the forest and
- * its leaves. To be called when these have changed. */
+/* Finds the bright patches anew, and the leaves that rays meet, by the radiosities of the
+ * forest and its leaves. To be called when these have changed. */
 void final_gather_renew(struct final_gather *gather);
 
 /* True if it is proved that nothing stands between a root and the roots that it faces:

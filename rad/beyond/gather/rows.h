@@ -139,7 +139,7 @@ struct offer {
     double factor; /* the exact form factor of a single sender that is near, 1; else -1 */
 };
 
-/* What segments are aimed at. */
+/* Senders that segments are aimed at. */
 struct gather_aims {
     struct senders *lamps;
     struct senders *bright;    /* patches that reflect so much that rays aim at them */
