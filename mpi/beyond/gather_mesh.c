@@ -47,6 +47,11 @@ static const double MESH = 0.005;
  * tell with an error of this part of the mean square. */
 static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
 
+/* Where a thing stands on a leaf, its light has a variance of at least this part of its
+ * square: few rays of a look may miss a strip of sunlit floor that reaches below a wall,
+ * of which a dark room would have the mean. */
+static const double SPREAD_CUT = 0.0625;
+
 /* Light of the mean radiosity of all surfaces, lamps included, has about this variance by
  * one ray, relative to its square. */
 static const double VARIANCE_OF_MEAN = 3.0;
@@ -248,7 +253,10 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
-        double spread = looks[i].cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
+        double spread = spread_of(&looks[i]);
+        if (looks[i].cut)
+            spread =
+                fmax(variance_of(&looks[i]), SPREAD_CUT * square_of_light(forest, leaf));
         keep_known(l, leaf, &looks[i]);
         if (forest_area(forest, leaf) * spread <= *threshold || !may_split(l, leaf))
             continue;
