@@ -252,9 +252,8 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
 
 /* A node that is sure to get a segment counts with its own light, shared among its
  * segments. The others are dealt theirs apart, a whole number, so that together they
- * count with their own light. All of few segments may miss a node of which a share is
- * seen from around: with one segment that stands for this, the share is still share /
- * (count + 1), and its light may be missing. */
+ * count with their own light. Where a share is seen from around, the variance is that of
+ * chance by this share at least: all of few segments may miss, which would seem sure. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row->leaf, &r->gather->view->counts);
@@ -285,11 +284,11 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
         bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
         const struct sender_node *at = &cuts->senders->nodes[node->node];
-        double share = node->seen / (count + 1);
+        double share = node->seen;
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
         for (int c = 0; c < BANDS && none && !r->looks; c++) {
             double h = direct * light.band[c] / rgb_sum(light);
-            around.band[c] += h * h * (share * (1.0 - share) / count + share * share);
+            around.band[c] += h * h / count * share * (1.0 - share);
         }
         if (volley->count[0] + volley->count[1] >= VOLLEY)
             end_volley(r, volley, light);
