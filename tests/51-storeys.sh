@@ -26,8 +26,8 @@ what_per_1000_words     1.4     2
 large_structs             2     0
 structs_twice             0     0
 files_in_circles         0     0
-upstairs_lines         9902  9200
-named_numbers_upstairs  128    70
+upstairs_lines         9909  9200
+named_numbers_upstairs  129    70
 bare_numbers_upstairs   120   134
 fields_upstairs          20    20
 fields_elsewhere        165    20
