@@ -92,8 +92,8 @@ static void tell_long(struct progress_view *view, double seconds)
         if (strcmp(SHORTER[i][0], phase) == 0) {
             print_duration(duration, sizeof duration, seconds / done);
             progress_view_clear(view);
-            fprintf(stderr, "phr: %s takes about %s; a %s takes less\n", phase, duration,
-                    SHORTER[i][1]);
+            fprintf(stderr, "%s: %s takes about %s; a %s takes less\n", error_program,
+                    phase, duration, SHORTER[i][1]);
             told = phase;
         }
 }

@@ -60,14 +60,14 @@ static const double NEARLY_ALL_HELD = 0.97, MANY_HELD = 0.1;
 static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
     struct beyond *beyond = solver->beyond;
-    double estimate = beyond->answer->counts.error;
-    beyond->accuracy.clear = spotcheck_settle(check, &beyond->answer->counts);
-    double larger =
-        estimate > 0.0 ? fmax(1.0, beyond->answer->counts.error / estimate) : 1.0;
+    struct gathered *counts = &beyond->answer->counts;
+    double estimate = counts->error;
+    beyond->accuracy.clear = spotcheck_settle(check, counts);
+    double larger = estimate > 0.0 ? fmax(1.0, counts->error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
         beyond->answer->error[p] *= (float)larger;
-    beyond->answer->counts.median *= larger;
-    beyond->answer->counts.worst_tenth *= larger;
+    counts->median = fmin(1.0, larger * counts->median);
+    counts->worst_tenth = fmin(1.0, larger * counts->worst_tenth);
 }
 
 /* --- limits --- */

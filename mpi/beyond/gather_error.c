@@ -249,11 +249,11 @@ static void rank_errors(const struct gathering *g, const struct rgb *variance,
     }
     qsort(errors, (size_t)count, sizeof *errors, compare_errors);
     for (int64_t k = 0; k < count; k++) {
-        passed += errors[k].area;
         if (passed <= 0.5 * area)
             counts->median = errors[k].relative;
         if (passed <= 0.9 * area)
             counts->worst_tenth = errors[k].relative;
+        passed += errors[k].area;
     }
     alloc_free(errors);
 }

@@ -425,7 +425,7 @@ static void refine(struct looking *l)
     guess_unseen(l);
 }
 
-/* Inner patches are cut where one of their children is. */
+/* Inner patches are cut where a child is. Patches that looks have made are all known. */
 static void raise_cuts(struct gather_mesh *mesh, const struct forest *forest)
 {
     RESERVE(mesh->cut, &mesh->cut_capacity, forest->count);
