@@ -93,20 +93,15 @@ static double error_of(const struct model *model, const struct link *link, int32
 
 /* --- doubt --- */
 
-/* Part of the exchange of two patches that is in doubt when segments disagree, when all
- * agree, and when it is open but near. The errors that come of half or twice these at the
- * same number of links differ by less than a tenth (Cornell box). */
-static const double DOUBT_MIXED = 0.25, DOUBT_AGREED = 0.125, DOUBT_OPEN = 0.0625;
+/* Part of the exchange of two patches that is in doubt unless it is open and they are
+ * far apart. The errors that come of half or twice of it at the same number of links
+ * differ by less than a tenth (Cornell box). */
+static const double DOUBT = 0.125;
 
 /* G in doubt of two patches. */
 static double doubt_of_patches(const struct link *link)
 {
-    if (link->seen == LINK_OPEN)
-        return 0.0;
-    if (link->seen == LINK_OPEN_NEAR)
-        return link_unoccluded(link) * DOUBT_OPEN;
-    bool agreed = link->seen == 0 || link->seen == LINK_ALL_SEEN;
-    return link_unoccluded(link) * (agreed ? DOUBT_AGREED : DOUBT_MIXED);
+    return link->seen == LINK_OPEN ? 0.0 : DOUBT * link_unoccluded(link);
 }
 
 /* Part of the bound on G that is in doubt of near ends, one of them a cluster, whatever a

@@ -137,9 +137,8 @@ static double share_held(const struct solution *s, int material,
     int32_t leaf = forest_next_leaf(forest, -1);
     int leaves = 0, held = 0;
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
-        int32_t root = (int32_t)forest->patches[leaf].id.root;
         double b = forest->radiosity[leaf].band[truth->band];
-        if (!is_looked_at(truth, s, root, material))
+        if (!is_looked_at(truth, s, (int32_t)forest->patches[leaf].id.root, material))
             continue;
         leaves++;
         held += fabs(b - truth_of_leaf(truth, s, leaf)) <=

@@ -28,10 +28,6 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* For each ray in all directions there are as many segments to bright patches as these
- * send of the reflected light, at least so many. */
-static const double AIMED_LEAST = 0.25;
-
 /* A sender is near a receiver if the distance of their centres is at most so many times
  * the sum of their radii. */
 static const double NEARBY = 2.0;
@@ -300,11 +296,12 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     }
 }
 
+/* For each ray there are as many segments as bright patches send of all that is
+ * reflected. */
 void receiver_aim_at_bright(struct receiver *r)
 {
     const struct gather_aims *aims = r->gather->aims;
-    aim_at_cut(r, aims->bright_cuts,
-               (int)ceil(r->rays * fmax(AIMED_LEAST, aims->bright_part)));
+    aim_at_cut(r, aims->bright_cuts, (int)ceil(r->rays * aims->bright_part));
 }
 
 void receiver_aim(struct receiver *r)

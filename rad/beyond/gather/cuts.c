@@ -25,9 +25,6 @@ enum { REGION_LEAVES = 64, PILOTS = 16 };
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
 
-/* The part of a segment that a node gets at most of which some senders may face away. */
-static const double MIXED = 1.0 / 16.0;
-
 /* --- regions --- */
 
 /* Counts the leaves of a patch. */
@@ -123,9 +120,7 @@ static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t 
     struct vec3 apart = vec3_sub(node->bounds.middle, region->middle);
     double reach = node->bounds.radius + region->radius;
     double far = real_max(vec3_length(apart) - reach, region->radius);
-    double share = sender_node_is_mixed(node, apart, reach) ? MIXED : 1.0;
-    if (node->child[0] < 0 ||
-        (node->bounds.radius <= SMALL * far && worth <= share * most)) {
+    if (node->child[0] < 0 || (node->bounds.radius <= SMALL * far && worth <= most)) {
         RESERVE(cuts->nodes, &cuts->capacity, cuts->count + 1);
         cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .upto = worth};
         return worth;

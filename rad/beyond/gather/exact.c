@@ -28,8 +28,8 @@ enum { FACED_PER_RAY = 4 };
 static const double SLENDER = 64.0;
 
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
- * number of rays, varies by less than this times what counts as constant: where more rays
- * are asked for, there is more to win. */
+ * number of rays, varies by less than this times the root of epsilon of the mean: so
+ * errors of senders fall with that root, as those of the mesh do. */
 static const double VARIES = 10.0;
 
 /* The light of a sender is looked at in quarters if the square of its size is more than
@@ -201,7 +201,8 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
 {
     const struct final_gather *g = r->gather;
     double near2 = fmin(1.0, nearness(&r->facet.triangle, sender));
-    return factor * range * near2 * g->rays > VARIES * g->sums->flat * g->mean;
+    double varies = VARIES * sqrt(g->model->criterion.epsilon);
+    return factor * range * near2 * g->rays > varies * g->mean;
 }
 
 /* A patch as a sender, or a part of a leaf. */
@@ -362,18 +363,14 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool p
     return is_open(gather, root, false);
 }
 
-/* From the default epsilon on, errors of senders fall with its root, as those of the mesh
- * do. */
 bool receiver_add_exact(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
-    double flat = g->sums->flat;
     uint32_t root = forest->patches[r->row->leaf].id.root;
     const struct gather_view *view = view_of(g, (int32_t)root);
     bool good = view->open;
     g->sums->exact = true;
-    g->sums->flat = fmin(flat, sqrt(g->model->criterion.epsilon));
     for (int turn = 0; turn < 2 && good; turn++) {
         double off = fabs(sum_of_row(g->sums) - 1.0);
         if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
@@ -385,7 +382,6 @@ bool receiver_add_exact(struct receiver *r)
             good = add_sender(r, view->faced[i]);
     }
     g->sums->sharp = false;
-    g->sums->flat = flat;
     g->sums->exact = false;
     return good && close_row(r);
 }

@@ -37,14 +37,6 @@ static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
  * be all the light of a room beside a bright one, and rays would hardly find it. */
 static const double FEW = 0.05;
 
-/* Bright patches are aimed at if the light of one ray varies, by their being met or not,
- * by at least this part of its mean square: a patch of 1 part in 1,000 that is 40 times
- * as bright as the mean. */
-static const double LEAST_BRIGHT = 0.04;
-
-/* Radiosity that varies by less than this part of the mean over a leaf is constant. */
-static const double FLAT = 0.01;
-
 /* Most by which the slope of B over a leaf is more than that over its parent: the square
  * root of the distance from an edge makes it 1.41, and links are not right enough there
  * to tell more. */
@@ -166,7 +158,6 @@ static struct gather_sums *sums_create(const struct model *model, double mean)
     const struct forest *forest = model->forest;
     struct gather_sums *sums = alloc_array(1, sizeof *sums);
     sums->scale = scale_of_bands(model, mean);
-    sums->flat = FLAT;
     sums->latest = alloc_array((size_t)forest->count, sizeof *sums->latest);
     sums->ranges = alloc_array((size_t)forest->count, sizeof *sums->ranges);
     for (int c = 0; c < BANDS; c++)
@@ -317,7 +308,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     for (int k = 0; k < 3; k++)
         slope.range = real_max(
             slope.range, difference(gather, b[k], middle, gather->sums->exact));
-    if (slope.range > gather->sums->flat * gather->mean)
+    if (slope.range > 0.0)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
     slope.steep = 1.0;
@@ -327,23 +318,13 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
-/* Finds the bright patches, if there is enough to win by aiming at them. */
 static void find_bright(struct gather_aims *aims, const struct model *model)
 {
-    double reflected = forest_mean_reflected(model->forest), squares = 0.0;
+    double reflected = forest_mean_reflected(model->forest);
     senders_destroy(aims->bright);
-    struct senders *bright = senders_create(model, BRIGHT * reflected, true);
-    for (int64_t i = 0; i < bright->sender_count; i++) {
-        double power = bright->before[i + 1] - bright->before[i];
-        squares += power * power / forest_area(model->forest, bright->patches[i]);
-    }
-    squares /= reflected * reflected * model->area;
-    if (!(squares >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
-        senders_destroy(bright);
-        bright = senders_create(model, HUGE_VAL, true);
-    }
-    aims->bright = bright;
-    aims->bright_part = senders_power(bright) / (reflected * model->area);
+    aims->bright = senders_create(model, BRIGHT * reflected, true);
+    aims->bright_part =
+        reflected > 0.0 ? senders_power(aims->bright) / (reflected * model->area) : 0.0;
 }
 
 void final_gather_renew(struct final_gather *gather)

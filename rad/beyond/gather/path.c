@@ -14,10 +14,6 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* A point is beside a patch if the square of its distance is less than this times the
- * square of the patch's radius. */
-static const double BESIDE = 2.0;
-
 /* Most points of a path; those from which it goes on in any case. */
 enum { PATH_MOST = 256, PATH_SURE = 2 };
 
@@ -26,8 +22,10 @@ enum { PATH_MOST = 256, PATH_SURE = 2 };
 static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
-    return root_is_sender(r->gather->aims->lamps, met->root) &&
-           !receiver_lamp_is_near(r->gather->model->scene, met->root, x);
+    if (!root_is_sender(r->gather->aims->lamps, met->root))
+        return false;
+    struct triangle t = scene_root_triangle(r->gather->model->scene, met->root);
+    return !point_is_beside(x, &t);
 }
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of
@@ -83,10 +81,7 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
     if (bright < 0)
         return false;
     struct triangle t = forest_triangle(r->gather->model->forest, bright);
-    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
-    double radius = triangle_radius(&t);
-    return !(vec3_dot(apart, apart) < BESIDE * radius * radius) &&
-           (r->points || path_ends(r, met, x));
+    return !point_is_beside(x, &t) && (r->points || path_ends(r, met, x));
 }
 
 /* True if the bright patch that a path has met, from x on its way, is aimed at from

@@ -62,9 +62,9 @@ void receiver_aim_at_bright(struct receiver *r);
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed);
 
-/* True if a lamp is so near, for its size, that rays from a point find it often enough:
- * on the way of a path they count its emission, and segments do not. */
-bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x);
+/* True if a sender is so near that rays from a point find it often enough, and segments
+ * are not aimed at it: its middle is nearer than its radius. */
+bool point_is_beside(struct vec3 x, const struct triangle *sender);
 
 /* Adds the light of the bright patch at its point y, which is seen from x and has this
  * form factor; or nothing, if rays from x are not aimed at it. */

@@ -33,8 +33,6 @@ struct gather_sums {
     int64_t first;   /* those before are not added to */
     bool exact;      /* the row is made of exact factors */
     bool sharp;      /* those of near triangles in closed form */
-    double flat;     /* part of the mean radiosity by which B may vary over a sender and
-                        count as constant */
     struct rgb scale; /* factors by which all bands have the same mean, that over bands
                          and all surface; of a band with less than GATHER_DIM of it the
                          factor of one with so much, 1 */

@@ -170,11 +170,6 @@ static double facing_most(const struct bounds *bounds, struct vec3 v)
            real_max(low->y * v.y, high->y * v.y) + real_max(low->z * v.z, high->z * v.z);
 }
 
-bool sender_node_is_mixed(const struct sender_node *node, struct vec3 apart, double reach)
-{
-    return facing_most(&node->bounds, apart) + reach > 0.0;
-}
-
 /* The mean of the heights above 0 of a node at this height, which reaches as far above it
  * as below; heights below 0 count as 0. */
 static double mean_above(double height, double reach)

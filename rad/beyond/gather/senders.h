@@ -75,9 +75,4 @@ struct choice {
 struct choice sender_choose(const struct senders *senders, const struct sender_node *node,
                             double u);
 
-/* True if some senders of the node may face away from a place, `apart` from it, and what
- * is within `reach` of that. */
-bool sender_node_is_mixed(const struct sender_node *node, struct vec3 apart,
-                          double reach);
-
 #endif

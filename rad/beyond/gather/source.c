@@ -7,9 +7,6 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* A lamp is near if the square of its distance is less than this times its area. */
-static const double NEAR_LAMP = 4.0;
-
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
@@ -55,11 +52,11 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     return blocker_of(r, x, input, y, root);
 }
 
-bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)
+bool point_is_beside(struct vec3 x, const struct triangle *sender)
 {
-    struct triangle t = scene_root_triangle(scene, lamp);
-    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
-    return vec3_dot(apart, apart) < NEAR_LAMP * scene_root_area(scene, lamp);
+    struct vec3 apart = vec3_sub(triangle_centroid(sender), x);
+    double radius = triangle_radius(sender);
+    return vec3_dot(apart, apart) < radius * radius;
 }
 
 /* The lamp is chosen by the cut of the patch's region, a point of it above the horizon by
@@ -73,9 +70,11 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
     struct cut cut = cuts_at(g->aims->lamp_cuts, patch, &g->view->counts);
     struct choice lamp = cuts_choose(g->aims->lamp_cuts, cut, hash_unit(seed));
-    if (lamp.patch < 0 || receiver_lamp_is_near(scene, lamp.patch, x))
+    if (lamp.patch < 0)
         return;
     struct triangle triangle = scene_root_triangle(scene, lamp.patch);
+    if (point_is_beside(x, &triangle))
+        return;
     struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
     struct rgb emission = scene_root_material(scene, lamp.patch)->emission;
     double factor = point_triangle_factor(x, normal, &triangle);

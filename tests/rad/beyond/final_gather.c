@@ -271,7 +271,7 @@ static void test_board(double height, double open)
  * straight from lamps. */
 static double light_of_floor(int parts)
 {
-    enum { SEEDS = 16 };
+    enum { SEEDS = 256 };
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), parts);
     paint(&soup, 0.5, 0.0);

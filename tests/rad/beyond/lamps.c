@@ -353,25 +353,6 @@ static void test_bright_rows(void)
     trial_free(&g);
 }
 
-/* A white grain of 1 mm lies on a dark floor of 1 m, ten times as bright: it sends a
- * millionth of the light, and no ray is aimed at it. */
-static void test_grain(void)
-{
-    struct soup soup = {0};
-    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&soup, 0.09, 0.0);
-    soup_add_quad(&soup, point(0.5, 0.5, 1), point(0, 0.1, 0), point(0.1, 0, 0), 1);
-    paint(&soup, 0.0, 100.0);
-    soup_add_box(&soup, point(0.5, 0.5, 0), point(0.501, 0.501, 0.001), 1, false);
-    paint(&soup, 0.9, 0.0);
-    struct trial g = gather_scene(&soup, "", 64);
-    double bright = senders_power(g.gather->aims->bright);
-    double lamps = senders_power(g.gather->aims->lamps);
-    tap_ok(bright == 0.0 && lamps > 0.0, "no ray is aimed at a white grain (%g W)",
-           bright);
-    trial_free(&g);
-}
-
 /* The mean B of the walls of a closet that a candle lights, alone or next to a hall. */
 static double light_of_closet(bool hall)
 {
@@ -615,7 +596,6 @@ int main(int argc, char **argv)
     test_bright_part(point(0.4, 0.6, 0.97), 0.004, "--max-level 7");
     test_bright_part(point(0.01, 0, 0.98), 1.0, "--max-level 7");
     test_bright_rows();
-    test_grain();
     test_candle();
     test_foliage();
     test_screen();
