@@ -19,6 +19,7 @@
 #                        paper, by processor seconds
 #   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
 #                        breaks radiosity programs (make ablation, make stability)
+#   make numbers         docs/numbers.md: half and twice of each tuned number
 #   make course          the programs, outputs and figures of docs/course/
 #   make exercise N=1    tests answers to the exercises of a chapter
 #   make film            build/film/, a solution growing, frame by frame; with
@@ -229,6 +230,10 @@ pages: ablation stability
 ablation: $(PHR) $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/ablation.sh
 
+# About half an hour on two cores.
+numbers: errors build/room
+	BUILD="$(BUILD)" MAKE="$(MAKE)" sh tests/bench/numbers.sh
+
 # About two minutes on two cores.
 stability: $(PHR)
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/stability.sh
@@ -335,6 +340,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
-    pages ablation stability course exercise film answers \
+    pages ablation numbers stability course exercise film answers \
     check-long prove cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE

@@ -28,6 +28,7 @@ structs_twice             0     0
 files_in_circles         0     0
 upstairs_lines         9855  9200
 named_numbers_upstairs  121    70
+tuned_numbers            70    70
 bare_numbers_upstairs   120   134
 fields_upstairs          20    20
 fields_elsewhere        165    20
@@ -73,6 +74,13 @@ awk -f tests/storeys.awk $(source_files) tools/*.[ch] tools/*/*.[ch] >"$work/fig
 while read -r name figure details; do
     judge "$name" "$figure" "$details"
 done <"$work/figures"
+
+judge tuned_numbers "$(grep -c '^| `' docs/numbers.md)"
+tr -d '`' <docs/numbers.md | grep '^| [A-Z]' | while IFS='|' read -r _ name value _ _ _ \
+    file _; do
+    grep -qF "$(echo $name = $value)" $file || echo $name = $value
+done >"$work/numbers"
+check "numbers are as docs/numbers.md says" [ ! -s "$work/numbers" ]
 
 # --- figures of runs, of a build whose functions stay apart and tell of their calls ---
 

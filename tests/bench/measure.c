@@ -41,7 +41,7 @@ static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,"
     "leaf_rms,"
     "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
-    "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise,leaves";
+    "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise,leaves,work";
 
 /* Seconds, below which first touches of code and memory show. */
 static const double SHORT = 0.1;
@@ -78,6 +78,7 @@ struct measured {
     struct stats stats; /* 0 where one does not apply */
     double seconds;
     int64_t leaves; /* those that reflect */
+    int64_t work;   /* in tests of the octree */
     struct deviation leaf, root, shown;
 };
 
@@ -128,8 +129,8 @@ static void print_line(const struct truth *truth, const struct scene *scene,
            shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
     printf(",%.4f,%.5f,%.5f", share_of_reflected(truth, scene, leaf), leaf->bias,
            shown->bias);
-    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%lld\n", root->rms, root->l1, root->median,
-           root->bias, root->noise, (long long)answer->leaves);
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%lld,%lld\n", root->rms, root->l1, root->median,
+           root->bias, root->noise, (long long)answer->leaves, (long long)answer->work);
 }
 
 /* --- the path tracer --- */
@@ -272,6 +273,7 @@ static void report(const struct measure *measure, struct solution *s,
     struct measured answer = {
         .stats = s->stats,
         .seconds = s->seconds,
+        .work = model_work(&s->solver->model),
         .leaf = deviation_of_leaves(forest, &measure->truth),
         .root = deviation_of_roots(forest, &measure->truth),
         .shown = deviation_of_points(&renderer, s->scene, &measure->truth)};
