@@ -26,7 +26,7 @@ what_per_1000_words     1.4     2
 large_structs             2     0
 structs_twice             0     0
 files_in_circles         0     0
-upstairs_lines         9855  9200
+upstairs_lines         9863  9200
 named_numbers_upstairs  121    70
 tuned_numbers            70    70
 bare_numbers_upstairs   120   134
