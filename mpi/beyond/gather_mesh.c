@@ -340,7 +340,7 @@ static void know_nothing(struct looking *l)
     know_exact(l, l->rays < FEWEST_LOOKED);
 }
 
-/* The leaves to be looked at, [*count]. */
+/* The leaves to be looked at, [*count]; black ones have a guess of 0. */
 static int32_t *choose_leaves(struct looking *l, int64_t *count)
 {
     const struct gather_mesh *mesh = l->mesh;
@@ -353,16 +353,16 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
     *count = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
-        bool exact = known->by_ray == IS_EXACT;
         double area = forest_area(model->forest, mesh->leaves[i]);
         double light = area * square_of_light(model->forest, mesh->leaves[i]);
         double most = SPREAD_MOST * (light + UNSURE * area * (sum / model->area));
-        if (!exact && most >= MESH * model->criterion.epsilon * sum) {
+        if (known->by_ray > 0.0 && most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
-        } else {
-            known->by_ray = exact ? IS_EXACT : IS_UNSEEN;
-            l->unseen += light;
+            continue;
         }
+        if (known->by_ray != IS_EXACT)
+            known->by_ray = IS_UNSEEN;
+        l->unseen += light;
     }
     return leaves;
 }
@@ -436,8 +436,9 @@ static void raise_cuts(struct gather_mesh *mesh, const struct forest *forest)
 
 /* --- rays --- */
 
-/* Shares rays and segments in proportion to the square root of area times variance.
- * Exact rows have the mean number, of which they make no use. */
+/* Shares rays and segments in proportion to the square root of area times variance. Black
+ * leaves have the fewest, for the balance of power alone, and exact rows, which make no
+ * use of theirs, the mean number. */
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
@@ -445,9 +446,13 @@ static void share_rays(struct looking *l)
     double *worth = alloc_array(2 * (size_t)mesh->count, sizeof *worth);
     int *shots = alloc_array(2 * (size_t)mesh->count, sizeof *shots);
     for (int64_t k = 0; k < 2 * mesh->count; k++) {
-        const struct known *known = &l->known[mesh->leaves[k / 2]];
-        double variance = k % 2 ? known->by_segment : fmax(0.0, known->by_ray);
-        worth[k] = sqrt(forest_area(forest, mesh->leaves[k / 2]) * variance);
+        int32_t leaf = mesh->leaves[k / 2];
+        const struct known *known = &l->known[leaf];
+        bool black = !(rgb_sum(forest_material(forest, leaf)->reflectance) > 0.0);
+        double variance = k % 2 ? known->by_segment : known->by_ray;
+        worth[k] = black || known->by_ray == IS_EXACT
+                       ? -1.0
+                       : sqrt(forest_area(forest, leaf) * variance);
     }
     gather_share_shots(worth, 2 * mesh->count, l->gather->rays, shots);
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);

@@ -27,21 +27,24 @@ static int shots_of(double worth, int mean)
 {
     int power = power_of(worth);
     int shots = power > 0 ? mean << power : mean >> -power;
-    return shots > FEWEST ? shots : FEWEST;
+    return worth < 0.0 || shots < FEWEST ? FEWEST : shots;
 }
 
 void gather_share_shots(const double *worth, int64_t count, int mean, int *shots)
 {
     double low = 0.0, high = 0.0;
-    for (int64_t k = 0; k < count; k++)
+    int64_t all = 0;
+    for (int64_t k = 0; k < count; k++) {
         high = fmax(high, worth[k]);
+        all += worth[k] < 0.0 ? FEWEST : mean;
+    }
     for (int step = 0; step < STEPS && high > 0.0; step++) { /* worth of the mean */
         double unit = 0.5 * (low + high);
         int64_t sum = 0;
         for (int64_t k = 0; k < count; k++)
             sum += shots_of(worth[k] / unit, mean);
-        *(sum > mean * count ? &low : &high) = unit;
+        *(sum > all ? &low : &high) = unit;
     }
     for (int64_t k = 0; k < count; k++)
-        shots[k] = shots_of(high > 0.0 ? worth[k] / high : 1.0, mean);
+        shots[k] = shots_of(high > 0.0 ? worth[k] / high : 2.0 * worth[k] + 1.0, mean);
 }

@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-/* Shares shots in proportion to `worth`, [count], at least 0, in any unit: `shots`,
- * [count], at least 4 each. Their sum is `mean` times `count` at most, unless these 4 are
- * too many. All are `mean` if nothing is worth anything. */
+/* Shares shots in proportion to `worth`, [count], in any unit: `shots`, [count], at least
+ * 4 each, and 4 where the worth is -1, none. The sum of the others is `mean` times their
+ * number at most, unless these 4 are too many; all are `mean` if all are worth 0. */
 void gather_share_shots(const double *worth, int64_t count, int mean, int *shots);
 
 #endif
