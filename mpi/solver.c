@@ -180,8 +180,9 @@ void solver_measure_row_sums(struct solver *solver, struct stats *stats)
     }
     alloc_free(all);
     double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count */
-    stats->row_sum_min = sum.min;
-    stats->row_sum_max = sum.max;
+    bool any = sum.min <= sum.max;
+    stats->row_sum_min = any ? sum.min : 0.0;
+    stats->row_sum_max = any ? sum.max : 0.0;
     stats->row_sum_mean = (double)sum.rows / area;
     stats->row_sum_rms = sqrt((double)sum.squares / area);
     solver->account.seconds[PHASE_ROW_SUMS] += comm_seconds() - start;

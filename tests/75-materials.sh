@@ -149,6 +149,19 @@ made="made with --ke radiance, this run has --ke radiosity"
 check "a checkpoint of radiances does not go on with radiosities" \
     [ "$said" = "phr: $work/of-radiance: $made" ]
 
+# Converters write colours of 0 where a file has none.
+try "0.5 0.5 0.5" "0 0 0"
+sed 's/^v .*/& 0 0 0/' "$work/scene.obj" >"$work/black.obj"
+for ranks in 1 3; do
+    $MPIEXEC -n $ranks ./phr "$work/black.obj" --stats "$work/black.json" \
+        >"$work/stdout" 2>"$work/said"
+    numbers() {
+        grep -q '; and nothing reflects any' "$work/said" &&
+            ! grep -qiE '(nan|inf)[, ]' "$work/black.json" "$work/stdout"
+    }
+    check "that nothing reflects is said, and row sums are numbers, on $ranks" numbers
+done
+
 try "0 0 0" "1 1 1"
 ./phr "$work/scene.obj" --accuracy 1% >"$work/stdout" 2>"$work/said"
 check "--accuracy does not converge where no surface reflects" \
