@@ -119,8 +119,6 @@ static void make_row(void *context, int64_t i)
     struct gathering *g = context;
     final_gather_add(g->gather, g->leaves[i], g->mesh->rays[i], g->mesh->segments[i],
                      g->mesh->exact[i]);
-    progress_tick(g->solver->progress,
-                  (double)g->gather->count * g->solver->comm->size / (double)g->count);
 }
 
 /* Collective. False if a signal on any rank has ended it. */

@@ -88,7 +88,6 @@ struct looking {
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
     const int32_t *leaves;     /* [count] that are looked at */
-    int64_t count;             /* of `leaves` */
     struct gather_look *looks; /* [looked] of this rank */
     int64_t looked;
 };
@@ -125,8 +124,6 @@ static void look_at(void *context, int64_t item)
 {
     struct looking *l = context;
     l->looks[l->looked++] = final_gather_look(l->gather, l->leaves[item], l->rays);
-    progress_tick(l->solver->progress,
-                  (double)l->looked * l->solver->comm->size / (double)l->count);
 }
 
 /* Collective. Looks at `count` leaves; [count], on all ranks. */
@@ -139,7 +136,6 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
                             .context = l, .work = work, .count = count};
     final_gather_renew(l->gather);
     l->leaves = leaves;
-    l->count = count;
     l->looks = alloc_array((size_t)count, sizeof *looks);
     l->looked = 0;
     stages_run(&stages);

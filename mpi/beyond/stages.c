@@ -42,6 +42,7 @@ static double deal(struct stages *s)
     int64_t *work = alloc_array((size_t)s->left, sizeof *work), sum = 0;
     for (int64_t k = 0; k < s->left; k++)
         sum += work[k] = s->work[s->items[k]];
+    s->all = s->left == s->count ? (double)sum : s->all;
     items_deal(work, (int32_t)s->left, ranks, rank_of);
     for (int64_t k = 0; k < s->left; k++)
         s->rank_of[s->items[k]] = rank_of[k];
@@ -50,7 +51,8 @@ static double deal(struct stages *s)
     return s->left > LAST * ranks ? PART * s->ratio * (double)sum / ranks : HUGE_VAL;
 }
 
-static struct stint do_items(const struct stages *s, double most)
+/* Progress is in predicted work, of which others do about as much as this rank. */
+static struct stint do_items(struct stages *s, double most)
 {
     struct stint own = {0, 0};
     int64_t before = final_gather_work(s->gather);
@@ -61,6 +63,8 @@ static struct stint do_items(const struct stages *s, double most)
             s->act(s->context, s->items[k]);
         own.items++;
         own.tests = final_gather_work(s->gather) - before;
+        s->done += (double)s->work[s->items[k]] * s->solver->comm->size;
+        progress_tick(s->solver->progress, s->done / s->all);
     }
     ledger_add(&s->solver->account.ledger, (struct phase_work){.kind = WORK_FINAL_GATHER,
                                                                .share.done = own.tests});

@@ -18,6 +18,7 @@ struct stages {
     int *rank_of;      /* [count] rank that does an item */
     int32_t *items;    /* [left] not done yet, heavy ones first */
     int64_t left;
+    double all, done;  /* work predicted for all items, and for those done, or so */
     double ratio;      /* tests that items took for the work predicted, in a stage */
 };
 

@@ -3,6 +3,7 @@
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/gather_mesh.h"
 #include "mpi/beyond/gather_shots.h"
+#include "mpi/beyond/stages.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
@@ -306,6 +307,42 @@ static void test_shots(void)
     tap_ok(shots[0] == MEAN && shots[COUNT - 1] == MEAN, "of no worth: all the mean");
 }
 
+static void do_nothing(void *context, int64_t item)
+{
+    (void)context;
+    (void)item;
+}
+
+static double first_share;
+
+static void keep_first(struct progress *progress)
+{
+    first_share = first_share > 0.0 ? first_share : progress->share;
+}
+
+/* The first of a thousand items, with half of all work, is half of the way. */
+static void test_progress(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 1e-2 --final-gather 16");
+    int64_t work[1000];
+    struct progress progress = {.show = keep_first};
+    struct stages stages = {.solver = s.solver,
+                            .gather = s.solver->beyond->answer->gather,
+                            .act = do_nothing, .work = work, .count = 1000};
+    for (int i = 0; i < 1000; i++)
+        work[i] = i == 500 ? 999 : 1;
+    s.solver->progress = &progress;
+    stages_run(&stages);
+    tap_ok(first_share == 0.5 && progress.share == 1.0,
+           "progress by work: %.3f after the heaviest of a thousand items", first_share);
+    stages_free(&stages);
+    s.solver->progress = NULL;
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -319,6 +356,7 @@ int main(int argc, char **argv)
     test_guess("--final-gather 16");
     test_guess("--final-gather 64 --epsilon 1e4");
     test_shots();
+    test_progress();
     test_own_errors("--epsilon 1e-3 --final-gather 32 --tolerance 1e-9", 0.02);
     test_own_errors("--max-level 0 --final-gather 32 --tolerance 1e-9", 0.48);
     comm_stop(&world_comm);
