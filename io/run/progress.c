@@ -29,8 +29,8 @@ static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
 
 /* A phase is long that takes more seconds than this, as is seen from so many seconds
- * on. */
-static const double LONG = 60.0, SECONDS_TO_TELL = 5.0;
+ * on: of a run of a minute some phase is. */
+static const double LONG = 30.0, SECONDS_TO_TELL = 2.0;
 
 static bool stderr_is_terminal(void)
 {
@@ -73,29 +73,35 @@ int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress
     return length < PROGRESS_WIDTH ? length : PROGRESS_WIDTH;
 }
 
-/* Says once of a phase that it takes long, if it does. */
+static const char *told; /* the phase last said to take long, or NULL */
+
+/* Says once of a phase that it takes long, if it does. Looks are a quarter of the gather,
+ * or less where they split much. */
 static void tell_long(struct progress_view *view, double seconds)
 {
-    static const char *const SHORTER[][2] = {
-        {"refining", "larger --epsilon"},
-        {"looking", "larger --epsilon"},
-        {"gathering", "smaller --final-gather or a larger --epsilon"},
-        {"rendering", "smaller --size or --samples"}};
-    static const char *told; /* the last phase that was said to take long */
-    const char *phase = view->progress.phase;
+    static const char RAYS[] = "smaller --final-gather or a larger --epsilon";
+    static const struct {
+        const char *phase, *name, *shorter;
+        double times; /* seconds of what is named, relative to those of the phase */
+    } PHASES[] = {{"refining", "refining", "larger --epsilon", 1.0},
+                  {"looking", "gathering", RAYS, 4.0},
+                  {"gathering", "gathering", RAYS, 1.0},
+                  {"rendering", "rendering", "smaller --size or --samples", 1.0}};
     double done = view->progress.share;
     char duration[32];
-    if (told == phase || !(done > 0.0) || seconds < SECONDS_TO_TELL ||
-        seconds < LONG * done)
+    if (!(done > 0.0) || seconds < SECONDS_TO_TELL)
         return;
-    for (size_t i = 0; i < sizeof SHORTER / sizeof SHORTER[0]; i++)
-        if (strcmp(SHORTER[i][0], phase) == 0) {
-            print_duration(duration, sizeof duration, seconds / done);
-            progress_view_clear(view);
-            fprintf(stderr, "%s: %s takes about %s; a %s takes less\n", error_program,
-                    phase, duration, SHORTER[i][1]);
-            told = phase;
-        }
+    for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++) {
+        double all = PHASES[i].times * seconds / done;
+        if (strcmp(PHASES[i].phase, view->progress.phase) != 0 || all < LONG ||
+            (told && strcmp(told, PHASES[i].name) == 0))
+            continue;
+        print_duration(duration, sizeof duration, all);
+        progress_view_clear(view);
+        fprintf(stderr, "%s: %s takes about %s; a %s takes less\n", error_program,
+                PHASES[i].name, duration, PHASES[i].shorter);
+        told = PHASES[i].name;
+    }
 }
 
 static void show(struct progress *progress)
@@ -122,6 +128,7 @@ static void show(struct progress *progress)
 
 void progress_view_open(struct progress_view *view, double (*clock)(void))
 {
+    told = NULL;
     *view = (struct progress_view){.progress = {.show = show}, .clock = clock,
                                    .shown = clock(),
                                    .terminal = stderr_is_terminal()};

@@ -20,8 +20,8 @@ struct progress_view {
 };
 
 /* Shows the progress from now on; without this call, ticks do nothing. Of a phase that
- * takes more than a minute a line that stays says so early, and which options make it
- * shorter. */
+ * takes more than half a minute a line that stays says so early, and which options make
+ * it shorter. */
 void progress_view_open(struct progress_view *view, double (*clock)(void));
 
 /* Removes the line. To be called before any other output on stderr. */

@@ -144,7 +144,14 @@ static void test_long(void)
            "a phase of four minutes is said to be long, once: %.40s", line);
     if (file)
         fclose(file);
-    tap_ok(lines_of_phase("gathering", 50.0) == 0, "one of 50 s is not");
+    tap_ok(lines_of_phase("gathering", 25.0) == 0, "one of 25 s is not");
+    lines = lines_of_phase("looking", 15.0);
+    file = fopen(LOG, "r");
+    tap_ok(lines == 1 && file && fgets(line, sizeof line, file) &&
+               strstr(line, "gathering takes about 61 s"),
+           "looks of 15 s are a quarter of a gather of a minute: %.40s", line);
+    if (file)
+        fclose(file);
     tap_ok(lines_of_phase("checking", 240.0) == 0, "nor one that nothing shortens");
     remove(LOG);
 }
