@@ -33,6 +33,7 @@
 enum {
     GRID = 6,      /* points along a side of the bounding box */
     AZIMUTHS = 32, /* level directions from an eye */
+    SIDES = 5,     /* that surfaces face */
     HALF = 3,      /* azimuths to either side of a view: 70 degrees in all */
     SLOPES = 5,    /* rays above and below each azimuth */
     SAMPLES = 16   /* rays along a side of a picture from outside */
@@ -54,6 +55,7 @@ struct site {
     const struct octree *octree;
     const struct forest *forest; /* or NULL */
     struct subject subject;
+    bool has_materials; /* that differ */
 };
 
 /* Results of a ray: the distance of a front (> 0), or one of these. */
@@ -232,20 +234,50 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
 
 /* --- outside --- */
 
-/* Returns the share of the materials, but for those of skies alone, that a picture has in
- * `rays` of its rays, each in full if it has a quarter of an equal part. */
+/* Returns the kind of a surface: its material, or where there is one only the side that
+ * it faces most, one of four or level. */
+static int32_t kind_of(const struct site *site, int32_t root)
+{
+    struct vec3 normal = scene_root_plane(site->scene, root).normal;
+    int up = site->subject.z_up ? 2 : 1, most = up;
+    for (int axis = 0; axis < 3; axis++)
+        if (fabs(vec3_axis(normal, axis)) > fabs(vec3_axis(normal, most)))
+            most = axis;
+    if (site->has_materials)
+        return site->scene->material_of[scene_input_of(site->scene, root)];
+    return most == up ? 4 : 2 * (most == 0) + (vec3_axis(normal, most) < 0.0);
+}
+
+/* True if there are several, but for those of skies. */
+static bool has_materials(const struct site *site)
+{
+    const struct scene *scene = site->scene;
+    int32_t first = -1;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        if (scene->areas[i] <= 0.0 || subject_has_as_sky(&site->subject, scene, i))
+            continue;
+        if (first >= 0 && scene->material_of[i] != first)
+            return true;
+        first = scene->material_of[i];
+    }
+    return false;
+}
+
+/* Returns the share of the kinds of surfaces, but for those of skies alone, that are in
+ * `rays` rays of a picture, each in full if it has a quarter of an equal part. */
 static double rate_variety(const struct site *site, const int *met, int rays)
 {
     const struct scene *scene = site->scene;
-    bool *there = alloc_array((size_t)scene->material_count, sizeof *there);
+    int32_t kinds = scene->material_count + SIDES;
+    bool *there = alloc_array((size_t)kinds, sizeof *there);
     double all = 0.0, some = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++)
         if (scene->areas[i] > 0.0 && !subject_has_as_sky(&site->subject, scene, i))
-            there[scene->material_of[i]] = true;
-    for (int32_t m = 0; m < scene->material_count; m++)
-        all += there[m];
-    for (int32_t m = 0; m < scene->material_count; m++)
-        some += real_min(1.0, 4.0 * all * met[m] / (rays > 0 ? rays : 1));
+            there[kind_of(site, i)] = true;
+    for (int32_t k = 0; k < kinds; k++)
+        all += there[k];
+    for (int32_t k = 0; k < kinds; k++)
+        some += real_min(1.0, 4.0 * all * met[k] / (rays > 0 ? rays : 1));
     alloc_free(there);
     return some / all;
 }
@@ -256,7 +288,7 @@ static double rate(const struct site *site, const struct camera *camera)
 {
     const struct scene *scene = site->scene;
     struct vec3 eye = scene_from_input(scene, camera->eye);
-    int *met = alloc_array((size_t)scene->material_count, sizeof *met);
+    int *met = alloc_array((size_t)scene->material_count + SIDES, sizeof *met);
     int rays = 0, lit = 0;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
         double x = (i % SAMPLES + 0.5) / SAMPLES * camera->width;
@@ -269,7 +301,7 @@ static double rate(const struct site *site, const struct camera *camera)
         rays += passes || shows;
         if (!is_lit(site, shown))
             continue;
-        met[scene->material_of[scene_input_of(scene, shown)]]++;
+        met[kind_of(site, shown)]++;
         lit += !passes || first == shown;
     }
     double variety = rate_variety(site, met, rays);
@@ -284,8 +316,9 @@ static void stand_outside(const struct site *site, enum shape shape,
                           struct camera *camera)
 {
     enum { SLOPED = 4, ASIDE = 6 };
+    /* Looking down by 0.4 the horizon, where a sky ends, is out of the picture. */
     static const double FROM_ABOVE[SHAPES][SLOPED] = {
-        {0.35, 0.0, 0.7, -0.35}, {0.7, 0.35, 0.0, -0.35}, {0.0, 0.35, 0.7, -0.35}};
+        {0.4, 0.0, 0.7, -0.4}, {0.7, 0.4, 0.0, -0.4}, {0.0, 0.4, 0.7, -0.4}};
     static const double LIKING[SLOPED] = {0.1, 0.0, 0.0, -0.5};
     struct camera chosen = *camera;
     double best = -1.0;
@@ -308,6 +341,7 @@ struct camera viewpoint_choose(const struct scene *scene, const struct octree *o
 {
     struct site site = {.scene = scene, .octree = octree, .forest = forest,
                         .subject = subject_find(scene)};
+    site.has_materials = has_materials(&site);
     struct vec3 side = vec3_sub(site.subject.high, site.subject.low);
     double tall = site.subject.z_up ? side.z : side.y;
     double deep = site.subject.z_up ? side.y : side.z;

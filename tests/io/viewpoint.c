@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "io/scene/obj.h"
+#include "io/scene/sky.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -357,6 +358,52 @@ static void test_cornell(void)
     check_open("the Cornell box", shot, 0.9);
 }
 
+/* Five slabs of one material, y up, open to one side below a sky: the picture is of the
+ * inside. */
+static void test_open_box(void)
+{
+    static const struct vec3 OPEN[] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+    for (int k = 0; k < 4; k++) {
+        struct soup soup = {0};
+        for (int axis = 0; axis < 3; axis++)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                double half[3] = {5, 5, 5}, middle[3] = {0, 0, 0};
+                half[axis] = 0.1;
+                middle[axis] = 5.0 * sign;
+                if (sign * vec3_axis(OPEN[k], axis) > 0.0)
+                    continue;
+                soup_add_box(&soup,
+                             point(middle[0] - half[0], middle[1] - half[1],
+                                   middle[2] - half[2]),
+                             point(middle[0] + half[0], middle[1] + half[1],
+                                   middle[2] + half[2]), 1, false);
+            }
+        paint(&soup, 0.5, 0.0);
+        struct scene *scene = scene_of_soup(&soup);
+        sky_add(scene, (struct rgb){{1, 1, 1}});
+        struct shot shot = shoot(scene, 512, 512);
+        struct vec3 from = vec3_unit(vec3_sub(shot.camera.eye, shot.camera.at));
+        tap_ok(vec3_dot(from, OPEN[k]) > 0.6, "a box of one material, open to %g %g %g",
+               OPEN[k].x, OPEN[k].y, OPEN[k].z);
+        shot_free(&shot);
+    }
+}
+
+/* Of a thing below a sky, seen from above, the horizon is not in the picture. */
+static void test_horizon(void)
+{
+    struct soup soup = {0};
+    soup_add_sphere(&soup, 1.0, 3);
+    paint(&soup, 0.5, 0.0);
+    struct scene *scene = scene_of_soup(&soup);
+    sky_add(scene, (struct rgb){{1, 1, 1}});
+    struct shot shot = shoot(scene, 640, 480);
+    double sky = share_of(&shot, scene->material_count - 1);
+    tap_ok(sky == 0.0 && shot.sight.fronts > 0.2, "a ball, and %.1f %% sky",
+           100.0 * sky);
+    shot_free(&shot);
+}
+
 /* --- small boxes, and things below a sky --- */
 
 /* A closed box with a lamp is seen from outside, level, with all that is in it. */
@@ -535,6 +582,8 @@ int main(void)
     test_lamp_from_below();
     test_lamp_above();
     test_cornell();
+    test_open_box();
+    test_horizon();
     test_small_box();
     test_below_sky();
     test_street();
