@@ -143,6 +143,15 @@ for suffix in ply vtk png hdr; do
 done
 check "--stats names what differs from the defaults" \
     grep -qF '"options": ["--two-sided on", "--epsilon 0.001"]' "$work/three/n.json"
+# A sky is a setting, also that of a scene without lamps, and not of its triangles.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/dark.obj"
+for sky in "" "--sky 1"; do
+    ./phr "$work/dark.obj" $sky --quiet --stats "$work/sky.json" -o "$work/sky.vtk"
+    check "a sky is named${sky:+ where it is given}" \
+        grep -qF '"options": ["--sky 1,1,1"]' "$work/sky.json"
+    check "and no part of the scene" \
+        grep -aq 'scene dark.obj, 1 triangles' "$work/sky.vtk"
+done
 check "a mesh with its note is a stored solution" \
     ./phr "$work/one/n.ply" --quiet -o "$work/again.ply"
 

@@ -169,8 +169,8 @@ static bool read_file(struct run *run, struct obj_repairs *repairs)
 static void add_sky(struct run *run)
 {
     struct scene *scene = run->scene;
-    struct rgb sky = run->options.sky;
-    bool emits = rgb_sum(sky) > 0.0, reflects = false;
+    struct rgb *sky = &run->options.sky;
+    bool emits = rgb_sum(*sky) > 0.0, reflects = false;
     for (int32_t i = 0; i < scene->input_count && !(emits && reflects); i++) {
         emits = emits || material_emits(scene_root_material(scene, i));
         reflects = reflects || rgb_sum(scene_root_material(scene, i)->reflectance) > 0.0;
@@ -179,10 +179,10 @@ static void add_sky(struct run *run)
         run_say(run, "%s: nothing emits light: --sky 1 is taken%s", run->options.scene,
                 reflects ? ""
                          : "; and nothing reflects any (Kd, or colours of vertices)");
-        sky = (struct rgb){{1.0, 1.0, 1.0}};
+        *sky = (struct rgb){{1.0, 1.0, 1.0}};
     }
-    if (scene->input_count > 0 && rgb_sum(sky) > 0.0)
-        sky_add(scene, sky);
+    if (scene->input_count > 0 && rgb_sum(*sky) > 0.0)
+        sky_add(scene, *sky);
 }
 
 static bool read_scene(struct run *run)

@@ -129,7 +129,7 @@ void run_set_note(const struct run *run)
     static char note[1200];
     snprintf(note, sizeof note,
              "phr %s, format %d\nscene %s, %ld triangles, checksum %016" PRIx64 "\n%s",
-             PHR_VERSION, PHR_FORMAT, run_scene_name(run), (long)run->scene->input_count,
+             PHR_VERSION, PHR_FORMAT, run_scene_name(run), (long)run->scene->sky_first,
              scene_hash(run->scene),
              run->stored ? "" : options_light_settings(&run->options));
     output_set_note(note);

@@ -569,7 +569,11 @@ static void describe(const struct options *options, const char *name)
                  *(const bool *)(const void *)field ? "on" : "off");
     else if (option->set == set_integer || option->set == set_gather)
         snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
-    else if (option->set != set_choice)
+    else if (option->set == set_colour) {
+        const struct rgb *colour = (const void *)field;
+        snprintf(line, room, "%s %.17g,%.17g,%.17g\n", name, colour->band[0],
+                 colour->band[1], colour->band[2]);
+    } else if (option->set != set_choice)
         snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
     else {
         for (int k = *(const int *)(const void *)field; k > 0; k--)
@@ -631,7 +635,7 @@ const char *options_run_settings(const struct options *options)
 const char *options_light_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--linking",
+        "--two-sided", "--two-sided-lamps", "--ke", "--sky", "--oracle", "--linking",
         "--form-factor", "--solver", "--epsilon", "--accuracy", "--max-level",
         "--min-area", "--tolerance", "--final-gather", NULL};
     struct options plain = DEFAULTS;
