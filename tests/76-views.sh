@@ -156,6 +156,9 @@ check "which meshes do not show" says 0 "no use is made of --show" "$work/plain.
     --show owner -o "$work/new.ply"
 check "a solution without roots is refused" says 2 "a solution without its roots" \
     tests/fuzz/corpus/ply/solution.ply -o "$work/new.pfm"
+./phr scenes/squares.obj --sky 1 --epsilon 1 --final-gather 0 --quiet -o "$work/sky.ply"
+check "so is one below a sky, with advice" says 2 "from its scene, without --sky" \
+    "$work/sky.ply" -o "$work/new.pfm"
 LC_ALL=C sed 's/^property float rest_g$/property float next_g/' "$work/plain.ply" \
     >"$work/lacking.ply"
 check "so is one that lacks a part of its light" says 2 "not a solution of phr" \

@@ -115,7 +115,8 @@ static bool take_stored(struct run *run, struct ply_file *file)
     if (!run->scene)
         return error_set(&run->error, EXIT_USAGE,
                          "%s: a solution without its roots (element root_corner), "
-                         "which cannot be shown: make it anew from its scene",
+                         "which cannot be shown: make it anew from its scene, "
+                         "without --sky",
                          run->options.scene);
     return check_stored(run);
 }
