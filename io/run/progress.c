@@ -28,9 +28,9 @@ static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 /* The time left is shown from this part of a stage and this many seconds on. */
 static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
 
-/* A phase is long that takes more seconds than this, as is seen from so many seconds
- * on: of a run of a minute some phase is. */
-static const double LONG = 30.0, SECONDS_TO_TELL = 2.0;
+/* A phase is long that takes more seconds than this: of a run of a minute some phase is.
+ * That is told with the first time left, or after so many seconds. */
+static const double LONG = 30.0, SECONDS_TO_TELL = 5.0;
 
 static bool stderr_is_terminal(void)
 {
@@ -89,7 +89,8 @@ static void tell_long(struct progress_view *view, double seconds)
                   {"rendering", "rendering", "smaller --size or --samples", 1.0}};
     double done = view->progress.share;
     char duration[32];
-    if (!(done > 0.0) || seconds < SECONDS_TO_TELL)
+    bool is_known = done >= DONE_LEAST && seconds >= SECONDS_LEAST;
+    if (!(done > 0.0) || (!is_known && seconds < SECONDS_TO_TELL))
         return;
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++) {
         double all = PHASES[i].times * seconds / done;
