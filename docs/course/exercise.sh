@@ -11,7 +11,7 @@ number=$(printf %02d "${1#0}") || exit 2
 answers=docs/course/${2:-exercises}/$number.c
 program=build/course/${2:-exercises}-$number
 if [ ! -e "$answers" ]; then
-    echo "usage: make exercise N=1   (or 2, ... 10)" >&2
+    echo "usage: make exercise N=1   (or 2, ... 11)" >&2
     exit 2
 fi
 mkdir -p build/course

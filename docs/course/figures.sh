@@ -81,3 +81,14 @@ $work/leaves $work/by-factor-0.1.ply |
 awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
     chart errors "Two rooms and a doorway" links "RMS error of objects" \
         -v logx=1 -v logy=1
+
+# row NAME TITLE FILE COLUMNS: columns of a table of rows.c.
+row() {
+    awk -v columns="$4" 'BEGIN { count = split(columns, column, " ") }
+        NR == 1 { for (i = 1; i <= count; i++) name[i] = $(column[i]); next }
+        { for (i = 1; i <= count; i++) print name[i], $1, $(column[i]) }' $work/"$3" |
+        chart "$1" "$2" "n" "error of H [%]" -v logx=1 -v logy=1
+}
+row row-rays "The box: n rays" rows-box.txt "2 3"
+row row-segments "A door ajar: n rays, and n segments" rows-ajar.txt "2 4 5 6"
+row row-exact "The lamp in the ceiling: n rays, and n segments" rows-open.txt "2 3 6 7"
