@@ -121,8 +121,8 @@ objects box build/course/box.ply         # of chapter 3
 solve corner
 for scene in squares corner box; do
     build/course/radiosity scenes/$scene.obj 0.25 | sed 1d >"$work/plain"
-    check "$scene: phr agrees with radiosity.c within 1.5 %" \
-        agree "$work/plain" "$work/$scene" 0.015
+    check "$scene: phr agrees with radiosity.c within 2 %" \
+        agree "$work/plain" "$work/$scene" 0.02
 done
 
 # --- scenes for lectures (1 %: behind doors, and far away, by reflections alone) ---
