@@ -33,11 +33,12 @@
 #include "rad/beyond/sample.h"
 
 enum {
-    SEGMENTS = 4,  /* to lamps, for a pixel, at first */
-    LEAST = 2,     /* --final-gather over the fewest in a pixel that is not sure */
-    WHOLE = 128,   /* rays and segments for a pixel in which things cover the leaf */
-    STEEP = 512,   /* the same on a steep leaf */
-    MORE = 4       /* most factor on these two */
+    SEGMENTS = 4, /* to lamps, for a pixel, at first */
+    LEAST = 2,    /* --final-gather over the fewest in a pixel that is not sure */
+    COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
+                     cover the leaf */
+    STEEP = 2,    /* those on a steep leaf, over --final-gather */
+    MORE = 4      /* most factor on these two */
 };
 
 /* A pixel is not sure if its light has this deviation by chance, or is so far from that
@@ -193,7 +194,9 @@ static int rays_for_all(const struct renderer *renderer, const struct pixel_root
     if (!shading)
         return renderer->rays;
     enum shade shade = shading->shades[shading_leaf_at(shading, view->roots[i], w)];
-    return shade == SHADE_SMOOTH ? 0 : shade == SHADE_STEEP ? STEEP : WHOLE;
+    return shade == SHADE_SMOOTH  ? 0
+           : shade == SHADE_STEEP ? STEEP * renderer->rays
+                                  : (renderer->rays + COVERED - 1) / COVERED;
 }
 
 /* Returns the light of all entries together, as the mesh has it. */
