@@ -5,34 +5,17 @@
 #
 # Traced pictures are kept in $BUILD/prove. With SAMPLES=2048 they take about half an hour
 # on two cores; the noise of a block, some 0.4 % in the room, falls like the root of that
-# number. It is told by the picture of a quarter of the samples, which are the first of
-# the others: as the mean of N is that of N/4 and of 3N/4 more, both differ by sqrt(3)
-# times the deviation of the whole. The pictures to be looked at, of the same exposure,
-# are there too, as .ppm.
+# number. The pictures to be looked at, of the same exposure, are there too, as .ppm.
 . tests/tap.sh
+. tests/traced.sh
 
-: "${PATHTRACER:=build/pathtracer}"
-: "${SAMPLES:=2048}" "${RANKS:=2}" "${LAMP:=10}" "${EXPOSURE:=0.8}"
+: "${SAMPLES:=2048}" "${LAMP:=10}"
 folder=$BUILD/prove
 mkdir -p "$folder"
 cp scenes/room.mtl "$folder"
 build/room 1500 1 >"$folder/room1500.obj"
 cp scenes/cornell.view "$folder"
 printf 'eye 2.4 0.37 1.8\nat -0.57 7.79 0.2\nup 0 0 1\nfov 70\n' >"$folder/room1500.view"
-
-# differ A B: the RMS and the largest difference of blocks, in percent.
-differ() {
-    "$IMGDIFF" --blocks 8 --below "$LAMP" "$1" "$2" |
-        awk '$1 == "relative" { print 100 * $4, 100 * $2 }'
-}
-
-# trace NAME SCENE SAMPLES: a traced picture, if it is not there.
-trace() {
-    traced=$folder/$1-$3
-    [ -e "$traced.pfm" ] || $MPIEXEC -n "$RANKS" "$PATHTRACER" "$2" --quiet \
-        --view "$folder/$1.view" --samples "$3" --exposure "$EXPOSURE" \
-        -o "$traced.pfm" -o "$traced.ppm"
-}
 
 # picture NAME SCENE RMS WORST OPTIONS...: at most so many percent, both without the noise
 # of the reference: blocks that are off most are so by its noise, too.
@@ -45,7 +28,8 @@ picture() {
     trace "$name" "$scene" "$SAMPLES"
     $MPIEXEC -n "$RANKS" "$PHR" "$scene" --quiet --view "$folder/$name.view" \
         --exposure "$EXPOSURE" "$@" -o "$shown.pfm" -o "$shown.ppm"
-    set -- "$*" $(differ "$shown.pfm" "$traced.pfm") $(differ "$first.pfm" "$traced.pfm")
+    set -- "$*" $(differ 8 "$LAMP" "$shown.pfm" "$traced.pfm") \
+        $(differ 8 "$LAMP" "$first.pfm" "$traced.pfm")
     noise=$(awk "BEGIN { print $4 / sqrt(3) }")
     worst_noise=$(awk "BEGIN { print $5 / sqrt(3) }")
     check "$name, ${1:-defaults}: noise of the reference $noise %, worst $worst_noise %" \
