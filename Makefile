@@ -12,6 +12,9 @@
 #                        tracer
 #   make chart           docs/chart.csv, docs/accuracy.md and, with gnuplot,
 #                        docs/chart-*.svg: speed against error
+#   make front           docs/front.csv, a table in docs/accuracy.md and, with gnuplot,
+#                        docs/front.svg: seconds against the error of pictures, by
+#                        settings: the defaults are to be on the front
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million
 #                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
@@ -215,6 +218,11 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
+# About half an hour on two cores, most of it for traced pictures, which are kept in
+# $(BUILD)/front; PATHS=256, for blocks alone, takes five minutes.
+front: $(PHR) $(IMGDIFF) pathtracer build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/front.sh
+
 # About eight minutes on two cores.
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
@@ -339,7 +347,7 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
+.PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
     pages ablation numbers stability course exercise film answers \
     check-long prove cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE
