@@ -34,7 +34,8 @@
 
 enum {
     SEGMENTS = 4, /* to lamps, for a pixel, at first */
-    LEAST = 2,    /* --final-gather over the fewest in a pixel that is not sure */
+    ENOUGH = 32,  /* in a pixel that is not sure, at least: or half of --final-gather if
+                     that is less, or a quarter if that is more */
     COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
                      cover the leaf */
     STEEP = 2,    /* those on a steep leaf, over --final-gather */
@@ -241,7 +242,8 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     double square = rgb_sum(pixel->sum) * count * renderer->mean;
     double noise = pixel->variance / (NOISE * NOISE * square);
     double apart = rgb_sum(pixel->apart) / APART;
-    int most = renderer->rays / SEGMENTS, least = most / LEAST;
+    int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;
+    least = most / 2 < least ? most / 2 : most / 4 > least ? most / 4 : least;
     if (!(noise > 1.0) && apart * apart <= square)
         return 1;
     return noise < least ? least : noise < most ? (int)noise : most;

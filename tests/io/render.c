@@ -97,8 +97,8 @@ static int64_t segments_at(struct solution *s, const struct shading *shading,
 }
 
 /* A pixel that is sure has 4 segments. Where some of these are blocked, as .35 of the
- * lamp is, or none, but the mesh of two leaves has another light, it has half to all of
- * the rays from a leaf besides. */
+ * lamp is, or none, but the mesh of two leaves has another light, it has a quarter to all
+ * of the rays from a leaf besides. */
 static void test_noise(void)
 {
     struct soup soup = {0};
@@ -113,9 +113,9 @@ static void test_noise(void)
     int64_t noisy = segments_at(&s, shading, point(0.43, 0.015, 0.0));
     int64_t lit = segments_at(&s, shading, point(0.7, 0.1, 0.0));
     tap_ok(sure == 4, "a pixel that is sure has %lld segments", (long long)sure);
-    tap_ok(noisy >= 4 + 2048 && noisy <= 4 + 4096, "a noisy one has %lld",
+    tap_ok(noisy >= 4 + 1024 && noisy <= 4 + 4096, "a noisy one has %lld",
            (long long)noisy);
-    tap_ok(lit == 4 + 2048, "one far from the mesh has %lld", (long long)lit);
+    tap_ok(lit == 4 + 1024, "one far from the mesh has %lld", (long long)lit);
     shading_destroy(of_even);
     shading_destroy(shading);
     solution_free(&even);
