@@ -59,11 +59,6 @@ const void *funnel_next(struct funnel *funnel, int rank)
     return spout->records + (size_t)spout->at * funnel->bytes;
 }
 
-void funnel_drop(struct funnel *funnel, int rank)
-{
-    funnel->spouts[rank].at++;
-}
-
 void funnel_end(struct funnel *funnel)
 {
     for (int r = 0; r < funnel->comm->size && funnel->spouts; r++)

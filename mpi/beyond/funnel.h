@@ -25,9 +25,9 @@ void funnel_start(struct funnel *funnel, const struct comm *comm, const void *re
                   int64_t count, size_t bytes);
 
 /* Rank 0 only: the next record of a rank, in the order in which it holds them, or NULL
- * after the last. Good until the next funnel_drop() of that rank, which goes past it. */
+ * after the last. Good until the next call for that rank; spouts[rank].at++ goes past
+ * it. */
 const void *funnel_next(struct funnel *funnel, int rank);
-void funnel_drop(struct funnel *funnel, int rank);
 
 /* Rank 0 has taken all records. */
 void funnel_end(struct funnel *funnel);

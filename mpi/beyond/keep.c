@@ -129,7 +129,7 @@ static void merge(struct funnel *funnel, link_sink *sink, void *context)
         if (least) {
             owners[count] = first;
             block[count++] = *least;
-            funnel_drop(funnel, first);
+            funnel->spouts[first].at++;
         }
         if (count == BLOCK || !least) {
             sink(context, block, owners, count);

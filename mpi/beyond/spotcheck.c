@@ -157,25 +157,20 @@ static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_
 static void trace_batch(struct checking *c, int batch)
 {
     const struct comm *comm = c->solver->comm;
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    int most = (BATCH - 1) / comm->size + 1; /* leaves of a rank */
     int64_t before = c->pathtracer->counts->rays;
-    struct finding all[BATCH] = {{.half = {{{0.0, 0.0, 0.0}}}}};
-    for (int k = 0; k < BATCH; k++)
-        counts[k % comm->size]++;
-    comm_displacements(comm, counts, at);
+    struct finding own[BATCH] = {{.half = {{{0.0, 0.0, 0.0}}}}};
     for (int k = comm->rank; k < BATCH && !stop_is_asked(); k += comm->size)
-        all[at[comm->rank] + k / comm->size] =
+        own[k / comm->size] =
             trace_leaf(c, c->leaves[c->drawn[k]], (uint64_t)(BATCH * batch + k));
-    comm_share(comm, all, counts, at, sizeof *all);
+    struct finding *all = comm_gather_each(comm, own, (size_t)most * sizeof *own);
     for (int k = 0; k < BATCH; k++)
-        c->found[k] = all[at[k % comm->size] + k / comm->size];
+        c->found[k] = all[k % comm->size * most + k / comm->size];
     int64_t sums[] = {c->pathtracer->counts->rays - before, stop_is_asked()};
     comm_add(comm, sums, 2);
     c->result.rays += sums[0];
     c->result.done = c->result.done && sums[1] == 0;
-    alloc_free(counts);
-    alloc_free(at);
+    alloc_free(all);
 }
 
 /* Collective. */

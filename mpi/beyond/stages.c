@@ -121,3 +121,47 @@ void stages_free(struct stages *stages)
     alloc_free(stages->items);
     *stages = (struct stages){.solver = NULL};
 }
+
+/* --- cuts --- */
+
+/* Collective. Gives all ranks the cuts of each. Pre: no two have made the same. */
+static void share_cuts(const struct comm *comm, struct cuts *cuts)
+{
+    const int64_t each = (int64_t)sizeof *cuts->nodes, regions = cuts->regions->count;
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    void *nodes = comm_gather_all(comm, cuts->nodes, each * cuts->count, at);
+    for (int64_t r = 0; r < regions; r++)
+        cuts->cuts[r].first += 1 + (cuts->cuts[r].count > 0 ? at[comm->rank] / each : 0);
+    comm_add(comm, &cuts->cuts->first, 2 * regions);
+    for (int64_t r = 0; r < regions; r++)
+        cuts->cuts[r].first--; /* -1 again: not made */
+    alloc_free(cuts->nodes);
+    cuts->nodes = nodes;
+    cuts->count = cuts->capacity = at[comm->size] / each;
+    alloc_free(at);
+}
+
+void stages_make_cuts(struct solver *solver, struct final_gather *gather,
+                      const int32_t *leaves, const bool *exact, int64_t count)
+{
+    const struct comm *comm = solver->comm;
+    struct gather_aims *aims = gather->aims;
+    int64_t before = final_gather_work(gather), dealt = 0;
+    bool *known = alloc_array((size_t)aims->regions->count, sizeof *known);
+    for (int64_t i = 0; i < count && !stop_is_asked(); i++) {
+        int32_t region = aims->regions->of[leaves[i]];
+        if (region < 0 || known[region] || (exact && exact[i]))
+            continue;
+        known[region] = true;
+        if (dealt++ % comm->size != comm->rank)
+            continue;
+        cuts_at(aims->lamp_cuts, leaves[i], &gather->view->counts);
+        cuts_at(aims->bright_cuts, leaves[i], &gather->view->counts);
+    }
+    share_cuts(comm, aims->lamp_cuts);
+    share_cuts(comm, aims->bright_cuts);
+    ledger_add(&solver->account.ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .share.done = final_gather_work(gather) - before});
+    alloc_free(known);
+}

@@ -28,4 +28,9 @@ struct stages {
 void stages_run(struct stages *stages);
 void stages_free(struct stages *stages);
 
+/* Collective. Makes the cuts of the regions of leaves, each on one rank for all. `exact`,
+ * [count]: leaves that need none; NULL: all do. Pre: the gather is as renewed. */
+void stages_make_cuts(struct solver *solver, struct final_gather *gather,
+                      const int32_t *leaves, const bool *exact, int64_t count);
+
 #endif
