@@ -143,14 +143,6 @@ void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
     }
 }
 
-void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count)
-{
-    MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, bytes, comm_count(comm, count), MPI_UINT8_T, MPI_SUM,
-                   comm->handle, &request);
-    comm_wait(&request);
-}
-
 void comm_add(const struct comm *comm, int64_t *numbers, int64_t count)
 {
     MPI_Request request;

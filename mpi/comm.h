@@ -32,10 +32,6 @@ void comm_wait_message(MPI_Request *request);
 /* Collective. Rank 0's bytes go to all; any size. */
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
 
-/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below
- * 256. */
-void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count);
-
 /* Collective. Each of `count` numbers becomes its sum over all ranks. */
 void comm_add(const struct comm *comm, int64_t *numbers, int64_t count);
 

@@ -54,7 +54,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "mpi/beyond/gather_error.h"
+#include "mpi/beyond/gathering.h"
 #include "rad/beyond/bicgstab.h"
 #include "rad/pushpull.h"
 
@@ -311,17 +311,13 @@ static void find_seen(struct gathering *g)
 /* Collective. */
 static void share_covers(struct gathering *g)
 {
-    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
-    for (int64_t row = 0; row < g->gather->count; row++)
-        own[row] = (struct rgb){{(double)g->gather->rows[row].bare,
-                                 (double)g->gather->rows[row].outside,
-                                 (double)g->gather->rows[row].kept}};
-    gathering_share_rows(g, shares);
-    for (int64_t i = 0; i < g->count; i++)
-        g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
-                                      .outside = shares[i].band[1],
-                                      .kept = shares[i].band[2]};
+    const size_t bytes = offsetof(struct cover, bare);
+    gathering_share_field(g, offsetof(struct gather_row, outside), bytes, shares);
+    for (int64_t i = 0; i < g->count; i++) {
+        memcpy(&g->covers[i], &shares[i], bytes);
+        g->covers[i].bare = g->areas[i] * (double)g->covers[i].part;
+    }
     find_seen(g);
     alloc_free(shares);
 }
@@ -395,16 +391,9 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 static void share_answer(struct gathering *g)
 {
     struct answer *answer = g->solver->beyond->answer;
-    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
-    struct rgb *open = alloc_array((size_t)g->count, sizeof *open);
     size_t patches = (size_t)g->solver->model.forest->count;
-    for (int64_t row = 0; row < g->gather->count; row++)
-        own[row] = g->gather->rows[row].lamps;
-    gathering_share_rows(g, light);
-    for (int64_t row = 0; row < g->gather->count; row++)
-        own[row] = (struct rgb){{(double)g->gather->rows[row].open}};
-    gathering_share_rows(g, open);
+    gathering_share_field(g, offsetof(struct gather_row, lamps), sizeof *light, light);
     alloc_free(answer->straight);
     alloc_free(answer->outside);
     answer->straight = alloc_array(patches, sizeof *answer->straight);
@@ -413,9 +402,8 @@ static void share_answer(struct gathering *g)
         struct rgb rho = gathering_material(g, i)->reflectance;
         for (int c = 0; c < BANDS; c++)
             answer->straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
-        answer->outside[g->leaves[i]] = (float)open[i].band[0];
+        answer->outside[g->leaves[i]] = g->covers[i].open;
     }
-    alloc_free(open);
     alloc_free(light);
 }
 

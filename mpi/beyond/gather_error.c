@@ -5,11 +5,10 @@
  * off by their root. The first is taken from how B varies in the parent, the second from
  * the scatter of the light of single rays. The part of B that the solution may lack comes
  * on top: a furnace, whose rows are exact, has no other error. */
-#include "mpi/beyond/gather_error.h"
+#include "mpi/beyond/gathering.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "mpi/beyond/beyond.h"
@@ -182,18 +181,12 @@ static double ratio_of_sequence(const struct noise *classes, int class)
  * that have about as much light. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
-    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
-    struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
-    struct rgb *lamps = alloc_array((size_t)g->count, sizeof *lamps);
-    struct rgb *const to[3] = {variance, halves, lamps};
-    for (int kind = 0; kind < 3; kind++) {
-        for (int64_t row = 0; row < g->gather->count; row++) {
-            const struct gather_row *at = &g->gather->rows[row];
-            const double *const of[3] = {at->chance, at->halves, at->of_segments};
-            memcpy(own[row].band, of[kind], sizeof own[row].band);
-        }
-        gathering_share_rows(g, to[kind]);
-    }
+    const size_t bytes = sizeof *variance;
+    struct rgb *halves = alloc_array((size_t)g->count, bytes);
+    struct rgb *lamps = alloc_array((size_t)g->count, bytes);
+    gathering_share_field(g, offsetof(struct gather_row, chance), bytes, variance);
+    gathering_share_field(g, offsetof(struct gather_row, halves), bytes, halves);
+    gathering_share_field(g, offsetof(struct gather_row, of_segments), bytes, lamps);
     struct noise classes[CLASSES] = {{0}};
     double ratios[CLASSES];
     uint8_t *own_class = alloc_array(BANDS * (size_t)g->count, sizeof *own_class);
@@ -225,28 +218,12 @@ static int compare_errors(const void *left, const void *right)
     return (a->relative > b->relative) - (a->relative < b->relative);
 }
 
-/* Finds percentiles, by area, of the errors of leaves relative to their own light. Leaves
- * that have neither light nor error do not count. */
-static void rank_errors(const struct gathering *g, const struct rgb *variance,
-                        double remaining, struct gathered *counts)
+/* Finds percentiles, by area, of the errors of leaves relative to their own light. */
+static void rank_errors(struct own_error *errors, int64_t count, struct gathered *counts)
 {
-    struct own_error *errors = alloc_array((size_t)g->count, sizeof *errors);
-    int64_t count = 0;
     double area = 0.0, passed = 0.0;
-    for (int64_t i = 0; i < g->count; i++) {
-        double square = 0.0, light = 0.0;
-        for (int c = 0; c < BANDS; c++) {
-            double rho = gathering_material(g, i)->reflectance.band[c];
-            double h = irradiance_of(g, i, c);
-            square += rho * rho * variance[i].band[c];
-            light += rho * rho * h * h;
-        }
-        if (!(square + light > 0.0))
-            continue;
-        errors[count++] = (struct own_error){fmin(1.0, sqrt(square / light) + remaining),
-                                             g->areas[i]};
-        area += g->areas[i];
-    }
+    for (int64_t k = 0; k < count; k++)
+        area += errors[k].area;
     qsort(errors, (size_t)count, sizeof *errors, compare_errors);
     for (int64_t k = 0; k < count; k++) {
         if (passed <= 0.5 * area)
@@ -255,7 +232,6 @@ static void rank_errors(const struct gathering *g, const struct rgb *variance,
             counts->worst_tenth = errors[k].relative;
         passed += errors[k].area;
     }
-    alloc_free(errors);
 }
 
 void gathering_estimate_errors(struct gathering *g, double remaining)
@@ -264,6 +240,8 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     size_t count = (size_t)g->count;
     struct rgb *mesh = alloc_array(count, sizeof *mesh);
     struct rgb *rays = alloc_array(count, sizeof *rays);
+    struct own_error *errors = alloc_array(count, sizeof *errors);
+    int64_t listed = 0;
     double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
@@ -273,27 +251,31 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
         struct rgb b = g->radiosity[g->gather->place[g->leaves[i]]];
-        double largest = 0.0;
+        double largest = 0.0, square = 0.0, own = 0.0;
         for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c];
+            double rho = m->reflectance.band[c], h = irradiance_of(g, i, c);
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             double reflected = b.band[c] - m->emission.band[c];
             largest = fmax(largest, BOUND * deviation + remaining * b.band[c]);
             by_rays += g->areas[i] * rho * rho * rays[i].band[c];
             by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;
+            square += rho * rho * (rays[i].band[c] + mesh[i].band[c]);
+            own += rho * rho * h * h;
         }
         error[g->leaves[i]] = (float)largest;
+        if (square + own > 0.0)
+            errors[listed++] = (struct own_error){
+                fmin(1.0, sqrt(square / own) + remaining), g->areas[i]};
     }
-    for (int64_t i = 0; i < g->count; i++)
-        rgb_add(&rays[i], 1.0, mesh[i]);
-    rank_errors(g, rays, remaining, &solver->beyond->answer->counts);
+    rank_errors(errors, listed, &solver->beyond->answer->counts);
     if (light > 0.0) {
         solver->beyond->answer->counts.by_rays = sqrt(by_rays / light);
         solver->beyond->answer->counts.by_mesh = sqrt(by_mesh / light);
         solver->beyond->answer->counts.error =
             sqrt((by_rays + by_mesh) / light + remaining * remaining);
     }
+    alloc_free(errors);
     alloc_free(rays);
     alloc_free(mesh);
 }

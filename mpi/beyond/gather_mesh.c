@@ -34,8 +34,6 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "mpi/beyond/gather_open.h"
-#include "mpi/beyond/gather_shots.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
 #include "rad/beyond/gather/bends.h"

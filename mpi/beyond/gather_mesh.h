@@ -26,4 +26,14 @@ struct gather_mesh {
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh);
 void gather_mesh_free(struct gather_mesh *mesh);
 
+/* Collective. Returns 1 for each root of which it is proved that nothing stands between
+ * it and the roots that it faces, else 0: [roots], to be freed. All are 0 if the open
+ * ones have less than half of the scene's area. Enters the work into the ledger. */
+uint8_t *gather_find_open_roots(struct solver *solver, struct final_gather *gather);
+
+/* Shares shots in proportion to `worth`, [count], in any unit: `shots`, [count], at least
+ * 4 each, and 4 where the worth is -1, none. The sum of the others is `mean` times their
+ * number at most, unless these 4 are too many; all are `mean` if all are worth 0. */
+void gather_share_shots(const double *worth, int64_t count, int mean, int *shots);
+
 #endif

@@ -5,7 +5,7 @@
  * casts shadows: so there are exact rows only if half of the scene's area is open. Proofs
  * cost much as well, and most scenes are not open: segments show first where a root is
  * not, and the search ends once half of the area cannot be had. */
-#include "mpi/beyond/gather_open.h"
+#include "mpi/beyond/gather_mesh.h"
 
 #include <stdlib.h>
 
@@ -39,7 +39,7 @@ static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
  * True if they have half of the scene's area. Large roots come first, those of about the
  * same area together, until that is out of reach. */
 static bool half_is_open(const struct solver *solver, struct final_gather *gather,
-                         const struct root_area *sorted, bool proof, uint8_t *open)
+                         const struct root_area *sorted, bool proof, int64_t *open)
 {
     const struct model *model = &solver->model;
     const struct comm *comm = solver->comm;
@@ -50,7 +50,7 @@ static bool half_is_open(const struct solver *solver, struct final_gather *gathe
              end++)
             open[end] = end % comm->size == comm->rank && !stop_is_asked() &&
                         final_gather_root_is_open(gather, sorted[end].root, proof);
-        comm_add_bytes(comm, open + begin, end - begin);
+        comm_add(comm, open + begin, end - begin);
         for (int32_t i = begin; i < end; i++)
             blocked += open[i] ? 0.0 : sorted[i].area;
     }
@@ -63,11 +63,11 @@ uint8_t *gather_find_open_roots(struct solver *solver, struct final_gather *gath
     int64_t before = final_gather_work(gather);
     struct root_area *sorted = sort_roots(solver->model.scene, roots);
     uint8_t *open = alloc_array((size_t)roots, sizeof *open);
-    uint8_t *found = alloc_array((size_t)roots, sizeof *found);
+    int64_t *found = alloc_array((size_t)roots, sizeof *found);
     if (half_is_open(solver, gather, sorted, false, found) &&
         half_is_open(solver, gather, sorted, true, found))
         for (int32_t i = 0; i < roots; i++)
-            open[sorted[i].root] = found[i];
+            open[sorted[i].root] = found[i] != 0;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .share.done = final_gather_work(gather) - before});

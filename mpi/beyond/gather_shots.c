@@ -4,7 +4,7 @@
  * has (Neyman, 1934). Numbers of shots are the mean times powers of two, since points of
  * a sequence are spread best over these; they are within bounds, since deviations are
  * guesses. */
-#include "mpi/beyond/gather_shots.h"
+#include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
 

@@ -2,7 +2,6 @@
  * that each of them gets. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/gather_mesh.h"
-#include "mpi/beyond/gather_shots.h"
 #include "mpi/beyond/stages.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
