@@ -126,6 +126,7 @@ static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
     progress_begin(solver->progress, "gathering", -1, 0);
+    stages_make_cuts(solver, g->gather, g->leaves, g->mesh->exact, g->count);
     *g->stages = (struct stages){.solver = solver, .gather = g->gather, .act = make_row,
                                 .context = g, .work = g->mesh->work, .count = g->count};
     stages_run(g->stages);

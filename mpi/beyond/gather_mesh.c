@@ -133,6 +133,7 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     struct stages stages = {.solver = l->solver, .gather = l->gather, .act = look_at,
                             .context = l, .work = work, .count = count};
     final_gather_renew(l->gather);
+    stages_make_cuts(l->solver, l->gather, leaves, NULL, count);
     l->leaves = leaves;
     l->looks = alloc_array((size_t)count, sizeof *looks);
     l->looked = 0;
