@@ -153,10 +153,10 @@ void stages_make_cuts(struct solver *solver, struct final_gather *gather,
         if (region < 0 || known[region] || (exact && exact[i]))
             continue;
         known[region] = true;
-        if (dealt++ % comm->size != comm->rank)
-            continue;
-        cuts_at(aims->lamp_cuts, leaves[i], &gather->view->counts);
-        cuts_at(aims->bright_cuts, leaves[i], &gather->view->counts);
+        if (dealt % comm->size == comm->rank)
+            cuts_at(aims->lamp_cuts, leaves[i], &gather->view->counts);
+        if ((dealt++ + comm->size / 2) % comm->size == comm->rank)
+            cuts_at(aims->bright_cuts, leaves[i], &gather->view->counts);
     }
     share_cuts(comm, aims->lamp_cuts);
     share_cuts(comm, aims->bright_cuts);
