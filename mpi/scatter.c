@@ -41,15 +41,20 @@ void routes_renew(struct solver *solver)
     routes->trees = forest->count;
     routes->counts = alloc_array((size_t)ranks, sizeof *routes->counts);
     routes->at = alloc_array((size_t)ranks + 1, sizeof *routes->at);
-    for (int32_t p = next_leaf(forest, -1); p >= 0; p = next_leaf(forest, p))
+    int32_t *leaves = alloc_array((size_t)forest->count, sizeof *leaves), count = 0;
+    for (int32_t p = next_leaf(forest, -1); p >= 0; p = next_leaf(forest, p)) {
         routes->counts[owner[forest->patches[p].id.root]]++;
+        leaves[count++] = p;
+    }
     for (int home = 0; home < ranks; home++)
         routes->counts[home] += BALLOT_RECORDS;
     size_t all = (size_t)comm_displacements(solver->comm, routes->counts, routes->at);
     routes->leaves = alloc_array(all, sizeof *routes->leaves);
     routes->radiosities = alloc_array(all, sizeof *routes->radiosities);
-    for (int32_t p = next_leaf(forest, -1); p >= 0; p = next_leaf(forest, p))
-        routes->leaves[routes->at[owner[forest->patches[p].id.root]]++] = p;
+    for (int32_t i = 0; i < count; i++)
+        routes->leaves[routes->at[owner[forest->patches[leaves[i]].id.root]]++] =
+            leaves[i];
+    alloc_free(leaves);
     routes->at[ranks] = (int)comm_displacements(solver->comm, routes->counts, routes->at);
 }
 
