@@ -34,7 +34,7 @@ fields_upstairs          20    20
 fields_elsewhere        165    20
 functions_of_row        297   200
 calls_to_first_ray       12     9
-calls_to_first_segment   15    10
+calls_to_first_segment   17    10
 '
 
 # judge NAME FIGURE [DETAILS]: the figure is not above its limit.
