@@ -1,4 +1,4 @@
-/* Looks and rows of the final gather, dealt to the ranks in stages; cuts, made for all. */
+/* Looks and rows of the final gather, dealt to ranks in stages; cuts, made for all. */
 #ifndef MPI_BEYOND_STAGES_H
 #define MPI_BEYOND_STAGES_H
 

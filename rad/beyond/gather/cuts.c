@@ -1,9 +1,7 @@
 /* Cuts.
  *
  * From the top of the tree downwards, a node is in the cut as soon as it is small for
- * its distance and would get no more than one segment, if these were dealt by light;
- * less where some of its senders may face away, for such a node brings all or nothing by
- * one segment.
+ * its distance and would get no more than one segment, if these were dealt by light.
  *
  * What is learnt decides only how segments are dealt, and how unsure a leaf is that has
  * found nothing; it never stands for light itself. Of a node of which k of n segments
