@@ -1,27 +1,27 @@
 /* --accuracy: links and rays are tightened until the error of the answer is small enough.
  *
  * A round is: links converge for an epsilon, the final gather fires N rays from a leaf,
- * spot checks (mpi/beyond/spotcheck.c) measure the error of its answer. The claim is that
+ * spot checks (mpi/beyond/spotcheck.c) measure the error of its answer. The claim is this
  * error with one deviation of its measurement,
  *
  *     claim^2 = E^2 + deviation,        E^2 = rays^2 + mesh^2.
  *
- * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 is more than
- * these by more than chance, the mesh has the surplus. If the claim is above the goal,
- * the next round brings E to AIM of it, which leaves room for the deviation, with both
- * parts alike unless one is small already: noise falls like N^-0.6 and costs N, the
- * mesh's part falls like the third root of epsilon, and leaves grow like the square root
- * of 1 / epsilon, so both cost about as much. The links go on from where they are, from
- * their own solution: a run is the same whether it is resumed before the gather or never
+ * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 exceeds their
+ * sum by more than chance, the mesh has the surplus. If the claim is above the goal, the
+ * next round brings E to AIM of it, which leaves room for the deviation, with both parts
+ * alike unless one is small already: noise falls like N^-0.6 and costs N, the mesh's part
+ * falls like the third root of epsilon, and leaves grow like the square root of 1 /
+ * epsilon, so both cost about as much. The links go on from where they are, from their
+ * own solution: a run is the same whether it is resumed before the gather or never
  * interrupted. Leaves that the gather has split stay split.
  *
- * A limit that holds it back is named. The mesh is at its end where memory, iterations,
- * --max-level or --min-area are, or where epsilon was lowered much and nothing came of
- * it; rays, where they are as many as can be, or do not fit into memory. Then the other
- * part is brought down to half of the one that stays, and that is delivered.
+ * The limit in the way is named. The mesh is at its end where memory, iterations,
+ * --max-level or --min-area are, or where epsilon was lowered much without effect; rays,
+ * at their largest number, or where rows do not fit into memory. Then the other part is
+ * brought down to half of the one that stays, and the answer is delivered.
  *
- * Rejected: aiming by slopes that are measured between rounds. With two or three rounds
- * they are mostly noise. */
+ * Rejected: aiming by slopes measured between rounds. With two or three rounds slopes are
+ * mostly noise. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
@@ -35,8 +35,8 @@ enum { ROUNDS_MOST = 12 };
 
 static const double AIM = 0.85, SMALLEST_EPSILON = 1e-10;
 
-/* Rays are multiplied by at most this in a round: with few of them it is cheap to find
- * the mesh's part. */
+/* Rays are multiplied by at most this in a round: with few rays the mesh's part is found
+ * cheaply. */
 enum { RAYS_FACTOR_MOST = 8 };
 
 /* Noise with twice the rays over noise now. */
@@ -50,8 +50,8 @@ static const double EPSILON_FACTOR_MOST = 0.5, EPSILON_FACTOR_LEAST = 0.125;
 static const double LOWERED = 0.125, STUCK = 0.9;
 
 /* Where limits keep this share of the leaves from being split: NEARLY_ALL_HELD, there is
- * no finer mesh; MANY_HELD, they are the reason why epsilon does not help or needs too
- * many rounds. */
+ * no finer mesh; MANY_HELD, the limits are the reason why epsilon does not help or needs
+ * too many rounds. */
 static const double NEARLY_ALL_HELD = 0.97, MANY_HELD = 0.1;
 
 /* --- the claim --- */
@@ -72,7 +72,7 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
 
 /* --- limits --- */
 
-/* The limit that keeps leaves from being split, and the share of leaves that it keeps. */
+/* The limit keeping leaves from being split, and the share of leaves kept. */
 static enum hold hold_of_leaves(const struct solver *solver, double *share)
 {
     const struct forest *forest = solver->model.forest;
@@ -91,7 +91,7 @@ static enum hold hold_of_leaves(const struct solver *solver, double *share)
     return deep > small ? HOLD_LEVEL : HOLD_AREA;
 }
 
-/* The limit that keeps the mesh from becoming finer, or a finer mesh from helping. */
+/* The limit keeping the mesh from becoming finer, or a finer mesh from helping. */
 static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 {
     const struct accuracy *accuracy = &solver->beyond->accuracy;
@@ -110,7 +110,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
     return stuck ? HOLD_EPSILON : HOLD_NONE;
 }
 
-/* The limit that keeps rays from being doubled. */
+/* The limit keeping rays from being doubled. */
 static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
 {
     struct memory memory = solver->memory;
@@ -123,8 +123,8 @@ static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t lin
 
 /* --- the next round --- */
 
-/* How large one part may be beside the other, if that stays; if `free`, it is to be
- * brought down, too. */
+/* How large one part may be beside the other, if that stays; if `free`, the other is to
+ * be brought down, too. */
 static double allowed_beside(double other, bool free, double aim)
 {
     double even = sqrt(0.5) * aim;
@@ -214,12 +214,12 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 /* The solution of the links. */
 struct linked {
     struct vote vote;
-    struct rgb *radiosity; /* [count] of the patches that there were then */
+    struct rgb *radiosity; /* [count] of the patches there were then */
     int64_t count;
 };
 
-/* Puts the light of the links back. Leaves that the gather has split stay split, and
- * B is linear over them. */
+/* Puts the light of the links back. Leaves split by the gather stay split, and B is
+ * linear over them. */
 static void restore_light(struct forest *forest, const struct linked *linked)
 {
     for (int64_t p = 0; p < forest->count; p++)

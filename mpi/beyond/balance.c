@@ -1,10 +1,10 @@
 /* Dealing by default: in turn, like cards.
  *
- * Each rank deals all of its links to all ranks, so that each gets its part of every
- * neighbourhood, with the links that are predicted too low and too high. No prediction is
- * needed, and the links that are not split end up even, too, over which light is
- * transferred. The work of the slowest rank, in means, and the bytes of links that moved
- * (phr ROOM --epsilon E --final-gather 0 --balance B --stats FILE, "work", "splitting"):
+ * Each rank deals all of its links to all ranks, so each gets its part of every
+ * neighbourhood, with the links predicted too low and too high. No prediction is needed,
+ * and the links that stay, over which light is transferred, end up even, too. The work of
+ * the slowest rank, in means, and the bytes of moved links (phr ROOM --epsilon E
+ * --final-gather 0 --balance B --stats FILE, "work", "splitting"):
  *
  *     room, epsilon, ranks     greedy          in turn
  *     1,004    1e-4     3      1.54   0.11 MB  1.02   0.58 MB
@@ -20,7 +20,7 @@
 
 #include <stddef.h>
 
-/* Begins with this rank itself, so that few links do not all go to the first ranks. */
+/* Begins with this rank itself, lest few links all go to the first ranks. */
 static void deal_in_turn(struct loads loads, const int64_t *costs, int64_t count,
                          int *destination)
 {

@@ -1,4 +1,4 @@
-/* The state of one rank that goes beyond the paper's. */
+/* The state of one rank beyond the paper's. */
 #ifndef MPI_BEYOND_BEYOND_H
 #define MPI_BEYOND_BEYOND_H
 
@@ -12,7 +12,7 @@ struct accuracy {
     bool clear;            /* the mesh's part of the error exceeds the doubt */
     double coarse;         /* the mesh's part of the error for coarse_epsilon */
     double coarse_epsilon; /* an epsilon of a round before; 0: none */
-    enum hold hold;        /* the limit that ended it */
+    enum hold hold;        /* the limit met */
 };
 
 /* The answer of the final gather. */
@@ -20,7 +20,7 @@ struct answer {
     struct gathered counts;
     float *error;         /* [patches] bound on the error of a leaf's B, for 95 % of
                              leaves and all bands, W/m^2; NULL: there is no answer */
-    struct rgb *straight; /* [patches] light straight from lamps that a leaf reflects,
+    struct rgb *straight; /* [patches] light straight from lamps, as a leaf reflects it,
                              W/m^2; NULL: there is no answer */
     float *outside;       /* [patches] share of a leaf outside of things on it and of
                              narrow gaps, 1; NULL: there is no answer */
@@ -45,20 +45,20 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
 /* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
-/* Frees the vectors that transfers of light need, after the last transfer. */
+/* Frees the vectors for transfers of light, after the last transfer. */
 void beyond_free_vectors(struct solver *solver);
 
 /* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
 
-/* The tree above the roots, and light over it, on all ranks; collective. Builds
- * solver->beyond->tree, and the light and the arrays that a tree needs. */
+/* The tree above the roots, and its light, on all ranks; collective. Builds
+ * solver->beyond->tree, and the light and the arrays of a tree. */
 void above_create(struct solver *solver);
 void above_free(struct solver *solver);
 
 /* Collective. Step 5, before a transfer: computes the radiosity of clusters, and clears
- * their flux; after it: sums the flux of clusters over all ranks and pushes it down to
- * the roots. */
+ * their flux; after a transfer: sums the flux of clusters over all ranks and pushes it
+ * down to the roots. */
 void above_begin(struct solver *solver, const struct rgb *vector);
 void above_collect(struct solver *solver);
 
@@ -68,11 +68,11 @@ void descent_begin(struct solver *solver);
 struct vote descent_vote(struct solver *solver, const struct ballot *sum);
 
 /* Collective. Step 9, phr's own, after the last vote: the final gather. Traces rows for
- * all leaves and solves for light by them; from then on `vote` is on that light. Returns
- * false if a signal has ended it, on all ranks. Pre: there are clusters. */
+ * all leaves and solves for light by them; from then on `vote` is on this light. Returns
+ * false on all ranks if a signal has ended the step. Pre: there are clusters. */
 bool solver_final_gather(struct solver *solver, struct vote *vote);
 
-/* Collective. Step 9, if there is one, and with --accuracy the verdict on it. After
+/* Collective. Step 9, if there is one, and with --accuracy its verdict. After
  * FINISH_AGAIN criterion and vote are those of the links, for more passes, or for this
  * step again with more rays. */
 enum finish solver_finish(struct solver *solver, struct vote *vote);

@@ -7,17 +7,17 @@
 #include "geom/alloc.h"
 
 /* A solution has diverged if its negative light is more than the remaining error can make
- * and 1 / NEGATIVE of all light: where row sums are so large that there is no solution,
- * the equation may still have one with negative light. */
+ * and 1 / NEGATIVE of all light: with row sums too large for a solution, the equation may
+ * still have one with negative light. */
 enum { NEGATIVE = 100 };
 
 /* The tolerance while links are still being split, in parts of the reflected light (not
- * of all light: lamps may emit nearly all of theirs into the void). With 3 % a tenth of
- * the iterations is saved that 1 % takes, and a corridor that gets dimmer and dimmer has
- * 0.2 % fewer patches; with 6 % it has 0.4 % fewer. */
+ * of all light: lamps may emit nearly all of theirs into the void). Of the iterations at
+ * 1 %, 3 % saves a tenth, and a corridor getting dimmer and dimmer has 0.2 % fewer
+ * patches; at 6 % 0.4 % fewer. */
 static const double WHILE_SPLITTING = 0.03;
 
-/* Measures row sums as the irradiances of B = 1, and tells them to all ranks. */
+/* Measures row sums as the irradiances of B = 1, and tells all ranks. */
 void descent_begin(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;

@@ -1,49 +1,49 @@
 /* Step 9, phr's own: the final gather and its solution.
  *
- * The links have brought a solution that is right in the large. Here each leaf gets a row
- * of form factors by rays (rad/beyond/final_gather.c), and
+ * The links have brought a solution right in the large. Here each leaf gets a row of form
+ * factors by rays (rad/beyond/final_gather.c), and
  *
  *     B = E + rho (source + W B)
  *
  * is solved for the leaves' B, from the links' solution on. The answer satisfies the
- * gathered equation, whatever the errors of the links were. Rows are kept, so that all
- * this costs one tracing, and products with a sparse matrix.
+ * gathered equation, whatever the errors of the links were. Rows are kept, so all this
+ * costs one tracing, and products with a sparse matrix.
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side.
- * In what is left of the equation a leaf counts by its area and, half of it all, relative
+ * In the residual of the equation a leaf counts by its area and, for one half, relative
  * to its light: else things below a wide sky would be left as the links have them. Rows
  * are dealt to the ranks. All ranks know all vectors, so only W B takes an exchange, and
  * scalar products are the same on all ranks.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
- * light there (rays.c). It is darker there than in the mean, so the rest of the
- * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
- * that goes to near receivers and the mean radiosity L that they have met, far ones are
- * shown B + n (B - L), and less where n > 1/2: min(1, 2 (1 - n)) of the difference.
- * (n / (1 - n) would be the whole, and noise where hardly any far ray meets the leaf.)
- * As a part of W that would make rows of both signs, and light in bright rooms would grow
- * with each reflection; as a factor of B it makes none. The factors are those of the
- * answer before, so light is solved for in turns, until one changes nothing. In the first
- * turn they are 1: of the links' light, which may lack much in a gap, some would be so
- * high that a bright room reflects more than it receives.
+ * light there (rays.c). There a leaf is darker than in the mean, so its rest, which
+ * others see, is brighter than the mean. With the part n of the leaf's light for near
+ * receivers and the mean radiosity L of the light they met, far ones are shown B + n (B -
+ * L), and less where n > 1/2: min(1, 2 (1 - n)) of the difference. (n / (1 - n) would be
+ * the whole, and noise where hardly any far ray meets the leaf.) As a part of W this
+ * would make rows of both signs, and light in bright rooms would grow with each
+ * reflection; a factor of B makes none. The factors are those of the answer before, so
+ * light is solved for in turns, until one changes nothing. In the first turn they are 1:
+ * by the links' light, which may lack much in a gap, some would be high enough to make a
+ * bright room reflect more than it receives.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
- * dark, so the part that others see is brighter than the mean, by the inverse of its
+ * dark, so the part seen by others is brighter than the mean, by the inverse of its
  * share.
  *
  * In a closed scene as much light arrives as leaves, on bare surfaces (on which no other
- * face lies). Rows sum to 1, but columns have the noise of rays and what is wrong with
- * leaves that are seen in part, so W loses or makes some thousandths of the light: of
- * rho .99 a hundredfold of that would be missing in the end. It is made up for within W,
- * in proportion to the irradiances of the turn before: with these, h, the areas a, the
- * shares k of what leaves that are kept, 1 but where a leaf faces out of the scene, and
- * W' = W + h (k a - W^T a)^T / (a^T h),
+ * face lies). Rows sum to 1, but columns have the noise of rays and the errors of leaves
+ * seen in part, so W loses or makes some thousandths of the light: with rho .99 a
+ * hundredfold would be missing in the end. The loss is made up for within W, in
+ * proportion to the irradiances of the turn before: with these, h, the areas a, the kept
+ * shares k of the light leaving, 1 but where a leaf faces out of the scene, and W' = W +
+ * h (k a - W^T a)^T / (a^T h),
  *
  *     a^T W' = (k a)^T,
  *
  * whatever light there is. So the balance of the answer is true. One factor for the
- * irradiances of the answer would make it true as well, but by the hundredfold, and for
- * the light that comes straight from lamps, too.
+ * irradiances of the answer would do so as well, but by the hundredfold, and change the
+ * light straight from lamps, too.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
@@ -64,18 +64,18 @@ enum { STEPS_MOST = 500 };
  * changes nothing. In gaps of rho .999 each leaves .6 of the error. */
 enum { TURNS_MOST = 40 };
 
-/* The part of what is left of the equation that each turn leaves: how bright leaves are
- * seen in the next one changes it by as much. */
+/* The part of the residual that each turn leaves: the factors of the next turn change the
+ * residual by as much. */
 static const double LEFT = 0.03;
 
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
 
-/* A leaf is seen brighter than it is in the mean by at most the inverse of this. */
+/* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
-/* Leaves with less than this part of the mean radiosity are solved for as if they had
- * so much. */
+/* Leaves with less than this part of the mean radiosity are solved for as if having so
+ * much. */
 static const double DARK = 1e-3;
 
 /* --- rows --- */
@@ -121,7 +121,7 @@ static void make_row(void *context, int64_t i)
                      g->mesh->exact[i]);
 }
 
-/* Collective. False if a signal on any rank has ended it. */
+/* Collective. False if a signal on any rank has ended the work. */
 static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
@@ -159,8 +159,8 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
     g->bytes += 2 * count * (int64_t)sizeof *values;
 }
 
-/* Collective. Adds up the light of leaves too near that no radiosity changes, and numbers
- * these leaves, in the order of all. */
+/* Collective. Adds up the constant light of leaves too near, and numbers these leaves, in
+ * the order of all. */
 static void share_near(struct gathering *g)
 {
     enum { EACH = (int)(sizeof *g->gather->near->items / sizeof(int64_t)) };
@@ -233,9 +233,9 @@ static void find_shown(struct gathering *g, const struct rgb *b)
     alloc_free(watts);
 }
 
-/* The area of a leaf whose emission arrives: of a lamp all that is outside of things, for
- * segments pass through a ceiling in whose plane it is; else the bare area. The top of a
- * lamp at the ceiling shines out of the room: nothing of that is kept. */
+/* The area of a leaf whose emission arrives: of a lamp all outside of things, for
+ * segments pass through a ceiling in the lamp's plane; else the bare area. The top of a
+ * lamp at the ceiling shines out of the room: nothing of its light is kept. */
 static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
@@ -244,8 +244,8 @@ static double shining_area(const struct gathering *g, int64_t i)
     return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 
-/* Spreads what is missing, so that as much light arrives as leaves, over irradiances `h`
- * for the radiosities `b`. `lamps`: as of irradiances(). */
+/* Spreads missing light, so that as much arrives as leaves, over irradiances `h` for the
+ * radiosities `b`. `lamps`: as of irradiances(). */
 static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
                           struct rgb *h)
 {
@@ -345,8 +345,8 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* Scales the irradiances of a closed scene so that all light that is kept is absorbed.
- * Their balance lacks what was below 0 and is 0, and what is left of the equation. */
+/* Scales the irradiances of a closed scene so that all kept light is absorbed. Their
+ * balance lacks values below 0, now 0, and the residual of the equation. */
 static void absorb_all(const struct gathering *g, struct rgb *h)
 {
     for (int c = 0; c < BANDS; c++) {
@@ -387,8 +387,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
-/* Collective. What pictures need to know of leaves: light straight from lamps, and the
- * shares that are open. */
+/* Collective. For pictures, of leaves: light straight from lamps, and the open shares. */
 static void share_answer(struct gathering *g)
 {
     struct answer *answer = g->solver->beyond->answer;
@@ -423,7 +422,7 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
 }
 
 /* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
- * `b`, which becomes the answer but where it is below 0. `h` and `r`: buffers. */
+ * `b`, which becomes the answer but where `b` is below 0. `h` and `r`: buffers. */
 static struct bicgstab take_turn(struct gathering *g, const double *weights,
                                  struct bicgstab_end end, struct rgb *b, struct rgb *h,
                                  struct rgb *r, struct rgb *answer)

@@ -1,10 +1,9 @@
 /* Records from all ranks to rank 0.
  *
  * Each rank sends its records in pieces, one after the other, and goes on when rank 0 has
- * received the last. Rank 0 asks for the next piece of a rank only when it has taken all
- * of the one before; so it can merge sorted streams of any length in little memory.
- * Rejected: one MPI_Gatherv, which needs room for everything on rank 0 and counts that
- * fit an int. */
+ * received the last. Rank 0 asks for the next piece of a rank only after taking all of
+ * the one before; so it can merge sorted streams of any length in little memory.
+ * Rejected: one MPI_Gatherv, which needs room for everything on rank 0 and int counts. */
 #include "mpi/beyond/funnel.h"
 
 #include "geom/alloc.h"

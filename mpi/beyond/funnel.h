@@ -1,5 +1,5 @@
-/* Records from all ranks to rank 0, which takes them one by one from the rank it likes,
- * while no more than a piece of each other rank's is in its memory. */
+/* Records from all ranks to rank 0, which takes one by one from any rank, with no more
+ * than a piece of each other rank's in memory. */
 #ifndef MPI_BEYOND_FUNNEL_H
 #define MPI_BEYOND_FUNNEL_H
 
@@ -9,8 +9,8 @@
 struct spout {
     const char *records; /* this rank's own, or the piece at hand */
     char *piece;         /* owned; NULL for this rank's own */
-    int64_t at, count;   /* next record in it, and how many it has */
-    int64_t left;        /* records that are still with their rank */
+    int64_t at, count;   /* next record, and number of records, of the piece */
+    int64_t left;        /* records still with their rank */
 };
 
 struct funnel {
@@ -19,14 +19,13 @@ struct funnel {
     struct spout *spouts;    /* [ranks], owned; NULL but on rank 0 */
 };
 
-/* Collective. `count` records of `bytes` bytes without padding on each rank; on rank 0
- * they stay borrowed until the end. Other ranks return when theirs have been taken. */
+/* Collective. `count` records of `bytes` bytes without padding on each rank; rank 0
+ * borrows its own until the end. Other ranks return when theirs have been taken. */
 void funnel_start(struct funnel *funnel, const struct comm *comm, const void *records,
                   int64_t count, size_t bytes);
 
-/* Rank 0 only: the next record of a rank, in the order in which it holds them, or NULL
- * after the last. Good until the next call for that rank; spouts[rank].at++ goes past
- * it. */
+/* Rank 0 only: the next record of a rank, in the rank's order, or NULL after the last.
+ * Good until the next call for the rank; spouts[rank].at++ goes past the record. */
 const void *funnel_next(struct funnel *funnel, int rank);
 
 /* Rank 0 has taken all records. */
