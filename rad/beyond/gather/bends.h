@@ -5,8 +5,8 @@
 #include "rad/model.h"
 
 /* Returns how many times a leaf is to be split: 0, or once if in any band B bends more
- * over it than is allowed, or more often if by so much more that a level is not enough.
- * `all`: the sum of area times the square of reflected radiosity over all leaves. */
+ * over the leaf than allowed, or more often if a level is not enough for the bend. `all`:
+ * the sum of area times the square of reflected radiosity over all leaves. */
 int gather_splits_of(const struct model *model, int32_t leaf, const struct rgb *all);
 
 #endif

@@ -7,8 +7,8 @@
 #include "geom/triangle.h"
 
 /* The factor (1) from a triangle with this unit normal to another, unoccluded: the mean
- * over points of it, which are the more the nearer the other is. Source: Lambert, exact
- * at each point. Adds the tests that points are worth to `work`. */
+ * over points of the first, the more the nearer the other is. Source: Lambert, exact at
+ * each point. Adds the worth of the points in tests to `work`. */
 double mean_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work);
 

@@ -2,9 +2,9 @@
  * finished solution.
  *
  * (The paper's gather, step 5, brings flux of proxies home; this one is phr's own.) Rows
- * are made once, by rays; then they can be applied to any radiosities. A row depends on
- * the scene, on the trees and on the radiosities of the solution, and on nothing else: it
- * is the same on any rank. */
+ * are made once, then applied to any radiosities. A row depends on the scene, on the
+ * trees and on the radiosities of the solution, and on nothing else: each rank would make
+ * the same row. */
 #ifndef RAD_BEYOND_FINAL_GATHER_H
 #define RAD_BEYOND_FINAL_GATHER_H
 
@@ -12,7 +12,7 @@
 
 /* The mean irradiance of points, W/m^2. */
 struct gather_light {
-    struct rgb lamps; /* emission that comes straight from lamps */
+    struct rgb lamps; /* emission straight from lamps */
     struct rgb rest;  /* all other light; 0 unless asked for */
     double variance;  /* of both, by the choice of segments and rays, over bands,
                          (W/m^2)^2 */
@@ -25,7 +25,7 @@ struct gather_look {
                                   of all */
     double variance;           /* of rho H of a ray with its segment, over bands,
                                   (W/m^2)^2 */
-    double of_segment;         /* that of the segment */
+    double of_segment;         /* the segment's part of `variance` */
     float fixed;               /* tests of a quarter, without its rays */
     float work;                /* tests of each ray */
     bool cut;                  /* a thing stands on the leaf */
@@ -40,11 +40,11 @@ struct final_gather *final_gather_create(struct model *model, int rays,
                                          const uint8_t *cut);
 void final_gather_destroy(struct final_gather *gather); /* NULL: none */
 
-/* Finds the bright patches anew, and the leaves that rays meet, by the radiosities of the
- * forest and its leaves. To be called when these have changed. */
+/* Finds the bright patches anew, and the patches as met by rays, by the radiosities of
+ * the forest and its leaves. To be called when these have changed. */
 void final_gather_renew(struct final_gather *gather);
 
-/* True if it is proved that nothing stands between a root and the roots that it faces:
+/* True if proofs show that nothing stands between a root and the roots that it faces:
  * then its leaves may have exact rows. Without `proof`: if no segment finds a blocker. */
 bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool proof);
 
@@ -71,25 +71,25 @@ int64_t final_gather_terms(const struct final_gather *gather);
 /* Forgets all rows, and leaves too near. */
 void final_gather_drop_rows(struct final_gather *gather);
 
-/* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over a root
- * that is not divided. */
+/* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over an
+ * undivided root. */
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 
-/* Returns B of a patch as the linear function over its parent has it, as steep as rows
- * take it at an edge, W/m^2. Pre: it has a parent. */
+/* Returns B of a patch by the linear function over its parent, as steep as in rows at an
+ * edge, W/m^2. Pre: the patch has a parent. */
 struct rgb light_by_parent(const struct forest *forest, int32_t patch);
 
 /* The integer of a value in units, bounded. */
 int64_t gather_units(double value, double unit);
 
-/* Adds the light of a row, W in square scene units, that comes by way of leaves too near
- * to these: `watts`, by `near` of the terms and band, in gather->near->unit_watts. */
+/* Adds the light of a row by way of leaves too near, W in square scene units, to `watts`,
+ * by `near` of the terms and by band, in gather->near->unit_watts. */
 void final_gather_add_near(const struct final_gather *gather, int64_t row,
                            const struct rgb *radiosity, int64_t *watts);
 
-/* The pull: inner patches get the mean of their leaves, by the shares of these that are
- * seen, and patches of which nothing is seen the mean of what is seen beside them: slopes
- * between neighbours do not know that a thing stands there. By place. */
+/* The pull: inner patches get the mean of their leaves, by the visible shares of these,
+ * and patches without a visible share get B of their parents: slopes between neighbours
+ * do not know of the thing standing there. By place. */
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);
 
 /* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source

@@ -1,4 +1,4 @@
-/* The points of surfaces that rays of the final gather meet. For the files of the final
+/* The points of surfaces met by rays of the final gather. For the files of the final
  * gather alone. */
 #ifndef RAD_BEYOND_MET_H
 #define RAD_BEYOND_MET_H
@@ -46,7 +46,7 @@ static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 
     return MET_FRONT;
 }
 
-/* Finds the first surface that the ray meets, but no leaf. */
+/* Finds the first surface on the ray, but no leaf. */
 static inline enum met probe(struct receiver *r, struct vec3 origin,
                              struct vec3 direction, struct point *point)
 {
@@ -56,7 +56,7 @@ static inline enum met probe(struct receiver *r, struct vec3 origin,
     return meet(r, origin, direction, &hit, point);
 }
 
-/* Finds the first surface that the ray meets. */
+/* Finds the first surface on the ray. */
 static inline enum met trace(struct receiver *r, struct vec3 origin,
                              struct vec3 direction, struct point *point)
 {
@@ -66,13 +66,13 @@ static inline enum met trace(struct receiver *r, struct vec3 origin,
     return met;
 }
 
-/* True if the first ray of a path comes from inside of a thing that stands on the leaf.
- * It costs some rays, so it is asked only where some ray of the leaf has met a back. */
+/* True if the first ray of a path comes from inside of a thing standing on the leaf.
+ * Costs some rays, spent only where some ray of the leaf has met a back. */
 bool ray_comes_from_inside(struct receiver *r, struct vec3 origin,
                            struct vec3 direction);
 
-/* True if a ray of a leaf from x ends at `end` in a gap that is narrow for the leaf. At
- * an edge, where surfaces meet, there is none. */
+/* True if a ray of a leaf from x ends at `end` in a gap narrow for the leaf. At an edge,
+ * where surfaces meet, there is none. */
 bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end);
 
 #endif

@@ -16,11 +16,11 @@ static inline void path_add_mesh(struct receiver *r, const struct point *point,
         receiver_add_source(r, weight, emission, -1.0);
 }
 
-/* True if a ray from x takes the mesh's light at the point that it has met. The leaf
- * there is too near for its mean to hold if less than a third of it is within the ray's
- * length of the point: what stands that near, the receiver itself above all, shades or
- * lights this part of the leaf and not the rest. A leaf that a thing stands across is too
- * near from anywhere: the light before a wall is not that behind it. */
+/* True if a ray from x takes the mesh's light at the point met. The leaf there is too
+ * near for its mean to hold if less than a third of its area is within the ray's length
+ * of the point: a thing so near, the receiver itself above all, shades or lights this
+ * part of the leaf and not the rest. A leaf with a thing across is too near from
+ * anywhere: the light before a wall differs from the light behind. */
 static inline bool path_ends(const struct receiver *r, const struct point *met,
                              struct vec3 x)
 {
@@ -28,14 +28,14 @@ static inline bool path_ends(const struct receiver *r, const struct point *met,
     return vec3_dot(ray, ray) >= r->gather->near->leaves[met->patch].reach2;
 }
 
-/* True if rays from x are aimed at the bright patch that the point which one has met is
- * on. From pixels the path of such a ray goes on where it does not end on the mesh, from
- * the holder of a bulb, say: found by chance it is a bright speck. */
+/* True if rays from x are aimed at the bright patch around the point met; from pixels
+ * even where the path goes on from there, as from the holder of a bulb: such light, found
+ * by chance, is a bright speck. */
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x);
 
-/* Adds the light of a path, times `weight`, that has met a point by a ray from x: it ends
- * there or goes on. `aimed`: the point is of a lamp that is aimed at. `aims`: from all of
- * its points at bright patches. */
+/* Adds the light, times `weight`, of a path at a point met by a ray from x: the path ends
+ * there or goes on. `aimed`: the point is of a lamp aimed at. `aims`: the path aims from
+ * all of its points at bright patches. */
 void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
                 struct rgb weight, uint64_t seed, bool aims);
 

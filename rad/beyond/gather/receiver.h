@@ -12,9 +12,9 @@ enum { TRIES_MOST = 16 };
 /* Sums over the rays of a receiver. */
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
-    int aside[2];     /* rays that have met what is aimed at, by halves */
+    int aside[2];     /* rays ended on bright patches aimed at, by halves */
     int inside;       /* rays from points inside of things */
-    int in_gap;       /* rays from points in gaps that are narrow for the leaf */
+    int in_gap;       /* rays from points in gaps narrow for the leaf */
     bool on_back;     /* some ray has met a back: a thing may stand on the leaf */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };
@@ -30,25 +30,23 @@ struct receiver {
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
     int segments;         /* to be fired at lamps, about */
-    int escaped;          /* rays and paths that have left the scene,
-                             or ended on a back */
-    int32_t near;         /* place of the leaf too near that the ray at hand met first;
-                             -1: none */
+    int escaped;          /* rays and paths out of the scene, or ended on a back */
+    int32_t near;         /* place of the leaf too near met first by the ray at hand; -1:
+                             none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
-    double bright;        /* form factor of the bright patches that are aimed at, 1 */
+    double bright;        /* form factor of the bright patches aimed at, 1 */
     struct ray_sums *sums; /* borrowed */
 };
 
-/* A receiver that is the leaf of the row, which has nothing else yet. Borrows row and
- * sums. */
+/* A receiver on the leaf of the row, which has nothing else yet. Borrows row and sums. */
 struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
                                  struct gather_row *row, struct ray_sums *sums);
 
 /* Adds `weight` times the mean radiosity of a patch. */
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);
 
-/* Adds `weight` times the radiosity that a patch has at a point of it, which has the
- * barycentric coordinates `at`: see gather_slope(). */
+/* Adds `weight` times the radiosity of a patch at its point with the barycentric
+ * coordinates `at`: see gather_slope(). */
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
 
@@ -62,27 +60,27 @@ void receiver_aim_at_bright(struct receiver *r);
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed);
 
-/* True if a sender is so near that rays from a point find it often enough, and segments
- * are not aimed at it: its middle is nearer than its radius. */
+/* True if a sender's middle is nearer to a point than the sender's radius: rays from the
+ * point find such a sender often enough, and no segments are aimed there. */
 bool point_is_beside(struct vec3 x, const struct triangle *sender);
 
-/* Adds the light of the bright patch at its point y, which is seen from x and has this
- * form factor; or nothing, if rays from x are not aimed at it. */
+/* Adds the light of the bright patch at its point y, visible from x, with this form
+ * factor; or nothing, if rays from x are not aimed at the patch. */
 void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
                   double factor, uint64_t seed);
 
-/* Adds `weight` times the light of a lamp that has this form factor. */
+/* Adds `weight` times the light of a lamp with this form factor. */
 void receiver_add_source(struct receiver *r, const struct rgb *weight,
                          struct rgb emission, double factor);
 
-/* The same to the light of the leaf too near that the ray at hand met first, if any. */
+/* The same to the light of the leaf too near met first by the ray at hand, if any. */
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor);
 
 /* Adds the rest of the light, by rays. Pre: receiver_aim() has been called. */
 void receiver_fire(struct receiver *r);
 
-/* The point of the receiver that u and v in [0, 1) stand for. */
+/* The point of the receiver for u and v in [0, 1). */
 static inline struct vec3 receiver_start(const struct receiver *r, double u, double v)
 {
     const struct gather_points *points = r->points;
@@ -90,24 +88,24 @@ static inline struct vec3 receiver_start(const struct receiver *r, double u, dou
                   : triangle_of_square(&r->facet.triangle, u, v);
 }
 
-/* The triangle that blocks the segment from a point of the receiver to one of a root, or
+/* The triangle blocking the segment from a point of the receiver to one of a root, or
  * -1. */
 int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root);
 
-/* Fills in the share of the leaf's light that is kept. Rays that seemed to begin inside
- * of a thing do so only if others begin outside of it, or all see backs: where walls show
- * their backs, and a floor and a ceiling end at them, the whole room is as the inside of
- * a column. Its rays are lost on the backs. */
+/* Fills in the kept share of the leaf's light. Rays seeming to begin inside of a thing do
+ * so only if others begin outside, or all see backs: where walls show their backs and end
+ * a floor and a ceiling, the whole room is as the inside of a column, and its rays are
+ * lost on the backs. */
 void receiver_find_outside(struct receiver *r);
 
-/* Fills in the shares of the leaf's area that are bare, not covered by another face in
+/* Fills in the shares of the leaf's area: the bare one, not covered by another face in
  * its plane (a picture on a wall, a lamp in the ceiling), and, as its rays have shown,
- * outside of things that stand on it. Of a leaf that sees nothing, as the underside of
- * such a thing, nothing is bare. */
+ * those outside of things on the leaf and of narrow gaps. A leaf with nothing in view, as
+ * the underside of such a thing, has no bare share. */
 void receiver_find_covers(struct receiver *r);
 
 /* Makes the row of a leaf from exact factors. False if its root is not open, or the row
- * cannot be exact; then it is to be made by rays. */
+ * cannot be exact; then rays are to make the row. */
 bool receiver_add_exact(struct receiver *r);
 
 #endif

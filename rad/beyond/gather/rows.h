@@ -1,4 +1,4 @@
-/* Rows of the final gather, and all that they are made of.
+/* Rows of the final gather, and their parts.
  *
  * The irradiance of a leaf is H = source + sum of weight B over its terms, band by band:
  * the row of the leaf. */
@@ -16,83 +16,83 @@
  * in all arrays of the final gather. */
 struct gather_term {
     int32_t place; /* of the patch */
-    int32_t near;  /* the leaf too near that its ray met first: its place, or, once these
+    int32_t near;  /* the leaf too near met first by the ray: its place, or, once these
                       are numbered, its number; -1: none */
     float weight[BANDS];
 };
 
-/* The row at hand: sums of what becomes its terms. */
+/* A term of the row at hand, while it is summed. */
 struct gather_sum {
-    int32_t place, near;  /* as those of a term */
+    int32_t place, near;  /* as of a term */
     double weight[BANDS]; /* a float would lose the sixth digit over thousands of rays */
 };
 
 struct gather_sums {
     struct gather_sum *items; /* [count] */
     int64_t count, capacity;
-    int64_t first;   /* those before are not added to */
+    int64_t first;   /* of the sums open to additions */
     bool exact;      /* the row is made of exact factors */
-    bool sharp;      /* those of near triangles in closed form */
-    struct rgb scale; /* factors by which all bands have the same mean, that over bands
-                         and all surface; of a band with less than GATHER_DIM of it the
-                         factor of one with so much, 1 */
+    bool sharp;      /* factors of near triangles are in closed form */
+    struct rgb scale; /* factors giving all bands the same mean, the one over bands and
+                         all surface; a band with less than GATHER_DIM of this mean has
+                         the factor of a band with so much, 1 */
     float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
-                        in the band where that is most, scaled, W/m^2 */
-    int32_t *latest; /* [forest->count] by place: where the latest sum of that place is,
+                        in the band of the largest range, scaled, W/m^2 */
+    int32_t *latest; /* [forest->count] by place: where the latest sum of the place is,
                         if there is one */
 };
 
-/* The form factors from a leaf to all that it sees. */
+/* The form factors from a leaf to all patches in its view. */
 struct gather_row {
     int32_t leaf;
-    int64_t end;       /* of its terms; they begin at the end of the row before */
-    struct rgb source; /* irradiance that comes from lamps, W/m^2 */
+    int64_t end;       /* of its terms, which begin at the end of the row before */
+    struct rgb source; /* irradiance from lamps, W/m^2 */
     struct rgb lamps;  /* irradiance straight from lamps, W/m^2 */
     double chance[BANDS]; /* variance of H if rays and segments were chosen by chance,
                              (W/m^2)^2, for the solution's radiosities */
-    double of_segments[BANDS]; /* the part of that which comes from segments to lamps */
+    double of_segments[BANDS]; /* the part of `chance` by segments to lamps */
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
-    float outside;     /* share of the leaf that is not inside of a thing on it, 1 */
-    float open;        /* share of it outside of things and of narrow gaps, 1 */
-    float bare;        /* share of that which no face in the leaf's plane covers, 1 */
-    float kept;        /* share of the leaf's light that arrives on fronts, by where its
-                          own rays end, 1 */
+    float outside;     /* share of the leaf outside of things, 1 */
+    float open;        /* share of the leaf outside of things and of narrow gaps, 1 */
+    float bare;        /* share of `outside` not covered by faces in its plane, 1 */
+    float kept;        /* share of the leaf's light arriving on fronts, by where its own
+                          rays end, 1 */
 };
 
-/* A leaf where rays have met it too near for its mean to hold: their paths went on from
+/* A leaf at points met by rays too near for its mean to hold: their paths went on from
  * there. */
 struct gather_near {
-    int64_t area;         /* of senders, each times the part of its rays that have met it
-                             so: by reciprocity, that of the leaf times the part of its
-                             light that goes there */
-    int64_t watts[BANDS]; /* that the rays found there, emitted by lamps */
+    int64_t area;         /* of senders, each times the part of its rays meeting the leaf
+                             so: by reciprocity, the leaf's area times the part of its
+                             light going there */
+    int64_t watts[BANDS]; /* found there by the rays, emitted by lamps */
 };
 
-/* The path of a ray of the row at hand that has met a leaf too near. */
+/* The path of a ray of the row at hand, from a leaf too near on. */
 struct gather_path {
     int32_t place;    /* of the leaf */
-    struct rgb light; /* times the ray's share of the row, that lamps brought, W/m^2 */
+    struct rgb light; /* brought by lamps, times the ray's share of the row, W/m^2 */
 };
 
 /* B as a linear function over a patch: see gather.c. */
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, made less where B would be below 0; 0: B is constant */
-    double steep;  /* slope over a child that leads up, over that of the leaf, 1 */
+    double steep;  /* slope over a child leading up, over the leaf's slope, 1 */
     double range;  /* largest difference of B from its value at the centre, over all
-                      bands; in exact rows of one band, as that of `ranges`, W/m^2 */
+                      bands; in exact rows of one band, as in `ranges`, W/m^2 */
 };
 
-/* A patch as rays meet it. */
+/* A patch as met by rays. */
 struct gather_leaf {
     struct vec3 middle; /* its centroid */
-    double reach2;      /* a ray that is shorter than the root of this meets it too near,
+    double reach2;      /* a ray shorter than the root of this meets the patch too near,
                            square scene units */
     struct gather_slope slope;
 };
 
-/* Sums of integers, for they are over ranks; and the patches as rays meet them. */
+/* Sums over ranks, so of integers; and the patches as met by rays. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
                                   all ranks, once these are added up, by number */
@@ -108,8 +108,8 @@ struct gather_nears {
 struct gather_counts {
     int64_t rays;           /* fired for first hits */
     int64_t segments;       /* tested for blockers */
-    int64_t escaped;        /* rays out of the scene or to backs, from leaves that see any
-                               front, and exact rows that do not sum to 1 */
+    int64_t escaped;        /* rays out of the scene or to backs, from leaves with any
+                               front in view, and exact rows not summing to 1 */
     int64_t exact;          /* rows made without rays */
 };
 
@@ -119,10 +119,10 @@ struct gather_view {
     bool open;         /* proved: nothing stands between the root and any of `faced` */
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
-    uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
+    uint8_t *overlapped; /* [roots] 2: by another root in the plane; 1: by none; 0:
                             unknown */
-    struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf
-                                    of the root */
+    struct octree_counts counts; /* of all proofs, made by each rank with a leaf of the
+                                    root */
 };
 
 /* A segment from a receiver to a sender. */
@@ -134,14 +134,14 @@ struct shot {
 /* The light of a node of a cut at a receiver, with nothing in the way. */
 struct offer {
     double worth;  /* by which segments are dealt, over all bands, W/m^2 */
-    double factor; /* the exact form factor of a single sender that is near, 1; else -1 */
+    double factor; /* the exact form factor of a single near sender, 1; else -1 */
 };
 
-/* Senders that segments are aimed at. */
+/* Senders as targets of segments. */
 struct gather_aims {
     struct senders *lamps;
-    struct senders *bright;    /* patches that reflect so much that rays aim at them */
-    double bright_part;        /* of all reflected light that these send, 1 */
+    struct senders *bright;    /* patches reflecting enough to be aimed at */
+    double bright_part;        /* their part of all reflected light, 1 */
     struct regions *regions;
     struct cuts *lamp_cuts, *bright_cuts;
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
@@ -174,8 +174,8 @@ struct gather_points {
     int count;
     struct vec3 middle;
     struct plane plane; /* of the surface, at the middle */
-    int32_t root;       /* that the points are on */
-    bool above;         /* they lie a little above it, so that it may hide lamps */
+    int32_t root;       /* under the points */
+    bool above;         /* the points lie a little above the root, which may hide lamps */
 };
 
 #endif

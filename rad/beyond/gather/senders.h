@@ -1,10 +1,10 @@
-/* Senders: lamps, and patches that reflect so much light that rays in all directions
- * would find them too seldom for what they bring. The final gather aims at them.
+/* Senders: lamps, and patches reflecting so much light that rays in all directions would
+ * find them too seldom for what they bring. The final gather aims at senders.
  *
- * They are the leaves of a tree, which is the part of the tree of clusters and patches
- * that has senders below it. A node's senders lie side by side, so one of them is chosen
- * by its power with a search in an array of sums. Emitted and reflected light have a tree
- * each, since a picture gathers lamps alone. */
+ * Senders are the leaves of a tree: the part of the tree of clusters and patches with
+ * senders below. A node's senders lie side by side, so a search in an array of sums
+ * chooses one by its power. Emitted and reflected light have a tree each, since a picture
+ * gathers lamps alone. */
 #ifndef RAD_BEYOND_GATHER_SENDERS_H
 #define RAD_BEYOND_GATHER_SENDERS_H
 
@@ -29,24 +29,24 @@ struct sender_node {
 
 struct senders {
     const struct model *model; /* borrowed */
-    bool reflect;              /* they send reflected light; false: emission */
+    bool reflect;              /* the light sent is reflected; false: emitted */
     double least;              /* a sender sends more than this, over all bands, W/m^2 */
     struct sender_node *nodes; /* [count] parents first; node 0 is the top */
     int32_t *patches;          /* [sender_count] the senders, in the tree's order */
     double *before;            /* [sender_count + 1] power of those before, over all
                                   bands, W in square scene units */
-    int32_t *part_of;          /* [forest->count] the sender that a patch is, or is part
-                                  of; -1: none; of lamps known of roots alone */
+    int32_t *part_of;          /* [forest->count] the sender of which a patch is all or
+                                  part; -1: none; of lamps known of roots alone */
     int64_t count, capacity, sender_count, sender_capacity, before_capacity;
 };
 
-/* The patches that send more than `least`, over all bands: lamps, which are roots, or, if
- * `reflect`, the largest patches that do so evenly. Borrows the model, which has clusters
+/* The patches sending more than `least`, over all bands: lamps, which are roots, or, if
+ * `reflect`, the largest patches doing so evenly. Borrows the model, which has clusters
  * and a solution. */
 struct senders *senders_create(const struct model *model, double least, bool reflect);
 void senders_destroy(struct senders *senders);
 
-/* The power that all send, over all bands, W in square scene units. */
+/* The power of all senders, over all bands, W in square scene units. */
 static inline double senders_power(const struct senders *senders)
 {
     return senders->before[senders->sender_count];
@@ -57,17 +57,17 @@ static inline bool root_is_sender(const struct senders *senders, int32_t root)
     return senders->part_of[root] == root;
 }
 
-/* The light that a sender sends, W/m^2. */
+/* The light of a sender, W/m^2. */
 struct rgb sender_light(const struct senders *senders, int32_t patch);
 
-/* An estimate of the irradiance, over all bands, that a node's senders bring to what has
- * the bounds `to`, if nothing is in the way, W/m^2. 0 only if they bring none. */
+/* An estimate of the irradiance, over all bands, within the bounds `to` by a node's
+ * senders, if nothing is in the way, W/m^2. 0 only if no light arrives. */
 double sender_node_worth(const struct senders *senders, const struct sender_node *node,
                          const struct bounds *to);
 
 /* A choice by chance. */
 struct choice {
-    int32_t patch; /* that was chosen */
+    int32_t patch; /* the chosen one */
     double share;  /* inverse of its probability, 1 */
 };
 
