@@ -1,14 +1,14 @@
 /* Bends of light over leaves with exact rows.
  *
- * Over such a leaf B counts as linear (rad/beyond/gather/gather.c). What is left is the
- * bend: B of a leaf less that of the linear function over its parent. Its error comes
- * back as often as light is reflected, so less is allowed where little is absorbed:
+ * Over such a leaf B counts as linear (rad/beyond/gather/gather.c). The rest is the bend:
+ * B of a leaf less the linear function over its parent. Its error comes back as often as
+ * light is reflected, so less is allowed where little is absorbed:
  *
  *     area * bend^2  <=  BENT * absorptance * epsilon * sum of area * (rho H)^2,
  *
  * in each band apart, since dim bands are to be right, too. Links make a mesh for the
- * brightest band. It may be too coarse by more than a level for a dim one that is
- * reflected more often, and where much is reflected next to an edge. */
+ * brightest band, which may be too coarse by more than a level for a dim one reflected
+ * more often, and where much is reflected next to an edge. */
 #include "rad/beyond/gather/bends.h"
 
 #include <math.h>
@@ -17,14 +17,14 @@
 
 static const double BENT = 0.002;
 
-/* Where B is smooth, the error of a bend over a child is the part FALL of that over its
- * parent, a sixteenth for the square of the bend, a quarter for the area; a child is
- * split, too, if it is more than MUCH times what is allowed. */
+/* Where B is smooth, the error of a bend over a child is the part FALL of the error over
+ * its parent, a sixteenth for the square of the bend, a quarter for the area; a child is
+ * split, too, if its error is more than MUCH times the allowed one. */
 static const double FALL = 1.0 / 64.0, MUCH = 64.0;
 
-/* The squares of B of a leaf less that of the linear function over its parent, band by
- * band. Over a root that function is constant, and some children have its B by chance:
- * there the one that is most off counts for all. */
+/* The squares of B of a leaf less the linear function over its parent, band by band. Over
+ * a root this function is constant, and some children have its B by chance: there the
+ * child most off counts for all. */
 static struct rgb bends_of(const struct forest *forest, int32_t leaf)
 {
     const struct patch *patches = forest->patches;

@@ -1,10 +1,10 @@
 /* Things that stand on a leaf, and faces in its plane that cover it.
  *
- * Rays that begin inside of a thing bring no light, and none of theirs leaves the scene:
- * they are told by probes that meet bounds of the thing on all sides (inside.h). Other
- * faces in the leaf's plane, as of a picture on a wall, are found by a few points just
- * above it. Pictures take narrow gaps for covered, too, as behind the frame of a window:
- * a ray that ends in one has begun there if the upright one ends in it as well. */
+ * Rays beginning inside of a thing bring no light and do not count as escaped: probes
+ * meeting bounds of the thing on all sides tell such rays (inside.h). A few points just
+ * above the leaf find other faces in its plane, as of a picture on a wall. Pictures take
+ * narrow gaps for covered, too, as behind the frame of a window: a ray ending in one has
+ * begun there if the upright ray ends there as well. */
 #include "rad/beyond/gather/met.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 
-/* Points of a leaf that are tested for being bare. */
+/* Points of a leaf tested for being bare. */
 enum { BARE_POINTS = 4 };
 
 /* A gap is narrow for a leaf if the square of its width is no more than this part of the
@@ -34,10 +34,10 @@ static bool is_among_bounds(struct model *model, struct vec3 origin, struct vec3
     return true;
 }
 
-/* True if the point is inside of a thing: it is among bounds, and below one, or, where a
- * column reaches the ceiling, below a point among them. Below the back of a canopy a
- * point is not among them, in a bin not below one. Where all walls are double nothing
- * tells the inside of a box from a room, and it is taken for a room. */
+/* True if the point is inside of a thing: among bounds, and below one, or, where a column
+ * reaches the ceiling, below a point among bounds. Below the back of a canopy a point is
+ * not among bounds, in a bin not below one. Where all walls are double nothing tells the
+ * inside of a box from a room, and the box is taken for a room. */
 static bool is_inside(struct receiver *r, struct vec3 origin)
 {
     struct model *model = r->gather->model;

@@ -1,14 +1,14 @@
 /* Exact rows of the final gather.
  *
- * Where it is proved for a root that nothing stands between it and any root that it
- * faces, its leaves need no rays: their rows are exact factors (noise 0). That is so in
- * grooves, between plates and in empty rooms, where the exact answers are.
+ * Where proofs show that nothing stands between a root and the roots that it faces, its
+ * leaves need no rays: their rows are exact factors (noise 0). That is so in grooves,
+ * between plates and in empty rooms, where the exact answers are.
  *
  * A sender over which B varies is taken in parts: its leaves, and quarters of leaves over
  * which B is linear.
  *
- * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
- * for all pairs cost more than the rays that they save. */
+ * Rejected: exact factors to senders open to a leaf and rays for the rest. Proofs for all
+ * pairs cost more than the rays saved. */
 #include "rad/beyond/gather/gather.h"
 #include "rad/beyond/gather/met.h"
 #include "rad/beyond/gather/factor.h"
@@ -19,17 +19,16 @@
 
 #include "geom/alloc.h"
 
-/* A root has exact rows only if it faces at most this many roots for each ray that would
- * be fired. */
+/* A root has exact rows only if it faces at most this many roots for each ray. */
 enum { FACED_PER_RAY = 4 };
 
 /* A root is slender if the square of its radius is more than this times its area: its
  * points are far apart for its width, and mean factors would take too many of them. */
 static const double SLENDER = 64.0;
 
-/* A sender is taken as a whole in an exact row if B over it, times its factor and the
- * number of rays, varies by less than this times the root of epsilon of the mean: so
- * errors of senders fall with that root, as those of the mesh do. */
+/* A sender is taken as a whole in an exact row if B, times the sender's factor and the
+ * number of rays, varies over the sender by less than this times the root of epsilon of
+ * the mean: so errors of senders fall with this root, as those of the mesh do. */
 static const double VARIES = 10.0;
 
 /* The light of a sender is looked at in quarters if the square of its size is more than
@@ -39,14 +38,14 @@ static const double NEAR_SENDER = 0.2;
 /* Faces are all but parallel if the cosine between their normals is less. */
 static const double PARALLEL = -0.99;
 
-/* A corner is behind a leaf's plane if it is by this part of the leaf's radius. */
+/* A corner is behind a leaf's plane if it is by more than this part of the radius. */
 static const double BEHIND = 0.01;
 
-/* Most times that a leaf is quartered. */
+/* Most quarterings of a leaf. */
 enum { QUARTERINGS = 3 };
 
 /* An exact row whose sum is within CLOSED of 1 sees no way out. One within ALL_BUT may
- * see none: in an acute corner single points miss faces that are near. */
+ * see none: in an acute corner single points miss near faces. */
 static const double CLOSED = 1e-3, ALL_BUT = 0.1;
 
 /* --- the roots that a root faces --- */
@@ -71,8 +70,8 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     return true;
 }
 
-/* True if a root below the node overlaps this one: one hides part of the other, by a face
- * in its own plane. */
+/* True if a root below the node overlaps this one in its plane: one hides part of the
+ * other. */
 static bool has_overlap(struct final_gather *g, const struct end *root, int32_t node)
 {
     struct end end = end_of(g->model, node);
@@ -98,8 +97,8 @@ static bool is_overlapped(struct final_gather *g, int32_t root)
     return *known == 2;
 }
 
-/* Lists the roots that a root faces. True if they are few, and nothing hides any of them
- * as far as segments tell; if `proof`, too. Segments find most blockers. */
+/* Lists the roots that a root faces. True if these are few, and nothing hides any as far
+ * as segments tell; if `proof`, as proofs tell, too. Segments find most blockers. */
 static bool is_open(struct final_gather *g, int32_t number, bool proof)
 {
     struct end root = end_of(g->model, number);
@@ -135,7 +134,7 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
 }
 
 /* True if the leaf and a sender form a hinge: the sender ends at the leaf's plane, or
- * before it, and is not beneath the leaf. */
+ * before, and does not lie opposite the leaf. */
 static bool is_hinge(const struct receiver *r, const struct facet *sender)
 {
     double lowest = 0.0;
@@ -146,8 +145,8 @@ static bool is_hinge(const struct receiver *r, const struct facet *sender)
            lowest >= -BEHIND * triangle_radius(&r->facet.triangle);
 }
 
-/* True if the leaf lies so close on a much larger one that it shades the part of it that
- * it sees: that part is darker than the mean of the whole. */
+/* True if the leaf lies so close on a much larger one that it shades the part in view:
+ * this part is darker than the mean of the whole. */
 static bool lies_on(const struct receiver *r, int32_t patch, double factor)
 {
     const struct forest *forest = r->gather->model->forest;
@@ -165,9 +164,9 @@ static double nearness(const struct triangle *to, const struct triangle *triangl
     return radius * radius / vec3_dot(apart, apart);
 }
 
-/* The mean place on a sender that its light comes from, in barycentric coordinates, by
- * three points of it, or of each of its quarters if it is near: else the senders along a
- * tube all err to the same side, and reflection after reflection adds to it. */
+/* The mean place of a sender's light on the sender, in barycentric coordinates, by three
+ * points, or by three of each quarter of a near sender: else the senders along a tube all
+ * err to the same side, and reflection after reflection adds to the error. */
 static void place_of_light(const struct facet *to, const struct triangle *sender,
                            struct vec3 normal, double w[3])
 {
@@ -193,9 +192,9 @@ static void place_of_light(const struct facet *to, const struct triangle *sender
         w[k] = all > 0.0 ? vec3_axis(sum, k) / all : 1.0 / 3.0;
 }
 
-/* True if a sender over which B varies by `range` is to be taken in parts: over it the
- * kernel varies by about the part that its size is of its distance, and not linearly by
- * the square of that. */
+/* True if a sender over which B varies by `range` is to be taken in parts: over a sender
+ * the kernel varies by about the ratio of size to distance, and not linearly by the
+ * square of this ratio. */
 static bool is_to_be_split(const struct receiver *r, const struct triangle *sender,
                            double factor, double range)
 {
@@ -212,12 +211,12 @@ struct sender_part {
     struct vec3 normal;
     double centre[3]; /* barycentric coordinates in the patch */
     double size;      /* of its edges, those of the patch being 1, times how much steeper
-                         B is over it; below 0 upside down */
+                         B is over the part; below 0 upside down */
     double steep[3];  /* over child k B is steeper by this factor, 1 */
-    bool whole;       /* no part of the patch, but all of it */
+    bool whole;       /* all of the patch */
 };
 
-/* Towards an edge B is ever steeper, from a child that leads up to that child's. */
+/* Towards an edge B is ever steeper, from a child leading up to its own such child. */
 static struct sender_part part_child(const struct sender_part *part, int k)
 {
     struct sender_part child = *part;
@@ -241,8 +240,8 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
                                   : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
-/* True if a part is so near, for its size or the leaf's, that three points of the leaf do
- * not tell where on it its light comes from. A part is small, and its middle does. */
+/* True if a part is too near, for its size or the leaf's, for three points of the leaf to
+ * tell the place of its light. A part is small, so its middle will do. */
 static bool is_near_part(const struct receiver *r, const struct sender_part *part)
 {
     const struct triangle *to = &r->facet.triangle;
@@ -289,8 +288,8 @@ static void part_set_steepness(struct sender_part *part, const struct forest *fo
             part->steep[k] = slope->steep;
 }
 
-/* Adds the exact factor to a patch, or to its leaves where B varies over it. False if one
- * of them is too near. */
+/* Adds the exact factor to a patch, or to its leaves where B varies. False if the leaf at
+ * hand lies on one of these. */
 static bool add_sender(struct receiver *r, int32_t patch)
 {
     const struct final_gather *g = r->gather;
@@ -332,8 +331,8 @@ static double sum_of_row(const struct gather_sums *sums)
     return sum;
 }
 
-/* False if an exact row has a sum that cannot be true, as where faces lie on each other,
- * or is inside of a thing. One that all but sums to 1 is made to. */
+/* False if an exact row has an impossible sum, as where faces lie on each other, or is
+ * inside of a thing. A row all but summing to 1 is made to do so. */
 static bool close_row(struct receiver *r)
 {
     const struct gather_sums *sums = r->gather->sums;

@@ -1,10 +1,10 @@
 /* Mean factors.
  *
- * The mean is taken at three points with a rule that is exact for polynomials of the
- * second degree. Where the other triangle is nearer than the size of this one, the four
- * quarters of this one are taken, and theirs, three times at most: then the points are a
- * sixteenth of its size apart. That finds nothing of light that gets out of a gap
- * narrower than this: across a gap the factor is the exact one of both triangles. */
+ * The mean is taken at three points with a rule exact for polynomials of the second
+ * degree. Where the other triangle is nearer than the size of this one, the four quarters
+ * of this one are taken, and theirs, three times at most: then the points are a sixteenth
+ * of its size apart, too far to find light getting out of a narrower gap. So across a gap
+ * the factor is the exact one of both triangles. */
 #include "rad/beyond/gather/factor.h"
 
 #include "geom/contour.h"
@@ -13,7 +13,7 @@
 
 enum { QUARTERINGS = 3 };
 
-/* Tests that take about as long as the exact factor of two triangles. */
+/* Tests taking about as long as the exact factor of two triangles. */
 enum { TESTS_PER_EXACT_FACTOR = 400 };
 
 static double factor_of_points(const struct triangle *from, struct vec3 normal,
@@ -44,8 +44,8 @@ static bool is_near(const struct triangle *from, const struct triangle *to)
     return distance2_to_box(triangle_centroid(from), to) <= 4.0 * size * size;
 }
 
-/* True if the two face each other across a gap that is narrow beside the first: its width
- * is less than a fifth of the square root of the area. */
+/* True if the two face each other across a gap narrow beside the first: its width is less
+ * than a fifth of the square root of the area. */
 static bool is_across_gap(const struct triangle *from, struct vec3 normal,
                           const struct triangle *to)
 {

@@ -1,24 +1,24 @@
-/* Things may pierce each other, so the first face that a ray meets does not tell: from
- * inside of one thing it may be the front of another. So faces are counted, as in the
- * crossing number of a polygon: a front is an entry, a back an exit, and one exit more
- * than entries is the thing that the ray has begun in. The walls of a room are entered,
- * and behind them there are as many exits as entries. */
+/* Things may pierce each other, so the first face on a ray does not tell: from inside of
+ * one thing this may be the front of another. So faces are counted, as in the crossing
+ * number of a polygon: a front is an entry, a back an exit, and one exit more than
+ * entries is the thing around the ray's origin. The walls of a room are entered, and left
+ * as often. */
 #include "rad/beyond/gather/inside.h"
 
 #include "rad/beyond/sample.h"
 
-/* Faces that a ray crosses, at most. */
+/* Faces crossed by a ray, at most. */
 enum { CROSSED_MOST = 32 };
 
-/* A face that a ray crosses. */
+/* A face crossed by a ray. */
 struct crossing {
     int32_t input; /* triangle, -1: none */
-    bool back;     /* it is met from behind, and has one side */
+    bool back;     /* met from behind, and of one side */
     struct vec3 at;
     struct vec3 normal; /* towards the ray's origin, but of a back */
 };
 
-/* The face that a ray crosses next; a back in the place of a front counts as that. */
+/* The next face crossed by a ray; a back in the place of a front counts as a front. */
 static struct crossing next_face(struct model *model, struct vec3 origin,
                                  struct vec3 direction)
 {
@@ -45,8 +45,8 @@ static bool is_backed(struct model *model, const struct crossing *front)
            vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
 }
 
-/* True if a ray that meets the face has left more things than it has entered, or meets a
- * front first that another backs; `*single`: it comes to a back alone, there or later. */
+/* True if a ray meeting the face leaves more things than it has entered, or meets first a
+ * front backed by another; `*single`: the ray leaves by a back alone, there or later. */
 static bool leaves_a_thing(struct model *model, struct crossing face,
                            struct vec3 direction, bool *single)
 {
