@@ -1,20 +1,20 @@
 /* Aiming at senders, from a receiver of the final gather.
  *
- * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h): half of
- * them by the light that nodes bring with nothing in the way, half by the share of it
- * that is seen from the region. So a lamp behind a wall, however bright, leaves some for
- * those in the room, and a node that the region has not seen counts twice as often at
- * most where it is seen. A sender of which the exact factor is F, and n segments of
- * which have the kernels K between their ends and meet a blocker or not (V), brings
+ * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h): half by
+ * the light of nodes with nothing in the way, half by the part of this light seen from
+ * the region. So a lamp behind a wall, however bright, leaves some segments for lamps in
+ * the room, and a segment to a node not seen from the region counts at most twice. A
+ * sender of which the exact factor is F, and n segments of which have the kernels K
+ * between their ends and meet a blocker or not (V), brings
  *
  *     F  sum of V K / sum of K  times its light:
  *
- * exactly F where all of it is seen, and 0 where nothing is. Of a bright patch that is
- * far away F is the mean of K times its area. Of a node with several senders each
- * segment chooses one by its power.
+ * exactly F where all of the sender is seen, and 0 where nothing is. Of a bright patch
+ * far away F is the mean of K times its area. Of a node with several senders each segment
+ * chooses one by its power.
  *
- * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
- * a bright patch which is aimed at is put aside (rays.c). */
+ * Rays meeting a lamp count its reflected light and not its emission. A ray meeting a
+ * bright patch aimed at is put aside (rays.c). */
 #include "rad/beyond/gather/receiver.h"
 
 #include <math.h>
@@ -32,23 +32,22 @@
  * the sum of their radii. */
 static const double NEARBY = 2.0;
 
-/* A near sender has an exact offer if it is for this part of a segment at least. */
+/* A near sender has an exact offer if worth this part of a segment at least. */
 static const double FOR_EXACT = 0.0625;
 
-/* Fewest segments that are enough to estimate the visible share of senders. */
+/* Fewest segments for an estimate of the visible share of senders. */
 enum { VOLLEY = 4 };
 
-/* Segments to nodes that are next to each other in the cut, in two halves. */
+/* Segments to neighbouring nodes of the cut, in two halves. */
 struct volley {
     double direct[2]; /* light without blockers, about, over all bands, W/m^2 */
-    double seen[2];   /* light with them */
+    double seen[2];   /* light with blockers */
     int count[2];     /* segments */
     double direct2, seen2, both; /* sums over segments of `direct` and `seen` squared, and
                                     of their product */
 };
 
-/* Adds segment `i` of `count` to a node: to the half that it belongs to; a single one, to
- * the smaller. */
+/* Adds segment `i` of `count` to a node: to its half; a single one, to the smaller. */
 static void add_segment(struct volley *volley, int i, int count, double direct,
                         double seen)
 {
@@ -62,7 +61,7 @@ static void add_segment(struct volley *volley, int i, int count, double direct,
 }
 
 /* Adds the variance of the volley's light, in the colour of one of its senders: as if by
- * chance, by how far single segments are from the mean share that is seen, and by the
+ * chance, by how far single segments are from the mean visible share, and by the
  * difference of its halves. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
 {
@@ -81,7 +80,7 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
 
-/* The senders that are aimed at, and the segments to a node of their cut. */
+/* The senders aimed at, and the segments to a node of their cut. */
 struct aim {
     const struct senders *senders;
     struct sequence sequence; /* of the node */
@@ -101,8 +100,8 @@ static struct shot shot_at(const struct receiver *r, const struct aim *aim,
     return shot;
 }
 
-/* Adds the light of a sender that arrives by a shot, which has this form factor. Returns
- * it, over all bands, W/m^2. */
+/* Adds the light of a sender by a shot with this form factor. Returns the light added,
+ * over all bands, W/m^2. */
 static double add_shot(struct receiver *r, const struct aim *aim, const struct shot *shot,
                        int32_t patch, double factor, uint64_t seed)
 {
@@ -127,7 +126,7 @@ static double exact_factor(const struct receiver *r, const struct facet *sender)
 
 /* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
  * or -1. Where the exact factor is taken, points below a horizon are passed over, or the
- * light would be lost where all of few are. */
+ * light would be lost where all of few points are below. */
 static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, int count,
                           double share, double factor)
 {
@@ -162,9 +161,9 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
     }
 }
 
-/* Fires `count` segments at a node of the cut, for `share` of its light. They are spread
- * evenly over its power, and each half of them is: the first takes every other place, the
- * second the rest. `factor`: of a single sender the exact one, or -1. */
+/* Fires `count` segments at a node of the cut, for `share` of its light. These, and each
+ * half of them, are spread evenly over its power: the first half takes every other place,
+ * the second the rest. `factor`: of a single sender the exact one, or -1. */
 static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int count,
                         double share, double factor)
 {
@@ -182,7 +181,7 @@ static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int
     }
 }
 
-/* Segments that are still to be dealt, one for each so much light. */
+/* Segments still to be dealt, one for each so much light. */
 struct dealing {
     double each; /* W/m^2 */
     double sum;  /* light of the nodes so far, in segments, from a chance start on */
@@ -203,7 +202,7 @@ static bool is_near_sender(const struct sender_node *node, const struct bounds *
     return node->child[0] < 0 && vec3_dot(apart, apart) <= reach * reach;
 }
 
-/* The offer of a node that is a single sender, by its exact factor. */
+/* The offer of a node of a single sender, by its exact factor. */
 static struct offer exact_offer(const struct receiver *r, const struct senders *senders,
                                 const struct sender_node *node)
 {
@@ -213,9 +212,9 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
     return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
 }
 
-/* Makes the offers of the nodes of a cut: half of all by light, half by light that is
- * seen. Those that are near, and bring a good part of the light of a segment, are exact.
- * Returns the light that each segment is for, W/m^2. */
+/* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
+ * Offers of near senders with a good part of the light of a segment are exact. Returns
+ * the light dealt to each segment, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
 {
@@ -246,10 +245,10 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     return sum / segments;
 }
 
-/* A node that is sure to get a segment counts with its own light, shared among its
- * segments. The others are dealt theirs apart, a whole number, so that together they
- * count with their own light. Where a share is seen from around, the variance is that of
- * chance by this share at least: all of few segments may miss, which would seem sure. */
+/* A node sure to get a segment counts with its own light, shared among its segments. The
+ * other nodes are dealt segments apart, a whole number, and so count together with their
+ * own light. Where a share is seen from around, the variance is at least the one of
+ * chance by this share: all of few segments may miss, which would seem sure. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row->leaf, &r->gather->view->counts);
@@ -296,8 +295,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     }
 }
 
-/* For each ray there are as many segments as bright patches send of all that is
- * reflected. */
+/* The number of segments is to the number of rays as the light of bright patches to all
+ * reflected light. */
 void receiver_aim_at_bright(struct receiver *r)
 {
     const struct gather_aims *aims = r->gather->aims;

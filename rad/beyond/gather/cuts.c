@@ -3,11 +3,11 @@
  * From the top of the tree downwards, a node is in the cut as soon as it is small for
  * its distance and would get no more than one segment, if these were dealt by light.
  *
- * What is learnt decides only how segments are dealt, and how unsure a leaf is that has
- * found nothing; it never stands for light itself. Of a node of which k of n segments
- * are seen the share is taken for (k + m) / (n + 1), with the mean share m of all nodes
- * of the cut: so no share is 0, and a node behind a wall with a window counts for less
- * than one that a leg of a chair hides. */
+ * The visible shares decide only how segments are dealt, and how unsure a leaf is after
+ * finding nothing; no share stands for light itself. Of a node with k of n segments seen
+ * the share is taken for (k + m) / (n + 1), with the mean share m of all nodes of the
+ * cut: so no share is 0, and a node behind a wall with a window counts for less than one
+ * behind a leg of a chair. */
 #include "rad/beyond/gather/cuts.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* Leaves of a region, at most; segments that tell how much of a node is seen. */
+/* Leaves of a region, at most; segments to tell how much of a node is seen. */
 enum { REGION_LEAVES = 64, PILOTS = 16 };
 
 /* A node is small if its radius is at most this part of its distance. */
@@ -35,8 +35,8 @@ static int32_t leaves_of(const struct forest *forest, int32_t patch)
     return patch_is_leaf(self) ? 1 : count;
 }
 
-/* Makes all leaves of a node part of a region, or adds the regions in it if that is
- * -1. `before`: [root_count + 1] leaves before a place in the tree. */
+/* Makes all leaves of a node part of a region, or, if this is -1, adds the node's
+ * regions. `before`: [root_count + 1] leaves before a place in the tree. */
 static void name_leaves(struct regions *regions, const struct model *model, int32_t node,
                         const int64_t *before, int32_t region)
 {
@@ -106,7 +106,7 @@ void cuts_destroy(struct cuts *cuts)
     alloc_free(cuts);
 }
 
-/* Appends the nodes of a cut below a node. `most`: light of one of them, at most, W/m^2.
+/* Appends the nodes of a cut below a node. `most`: light of one of these, at most, W/m^2.
  * Returns the light of all. */
 static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t number,
                         double most)

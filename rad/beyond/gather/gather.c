@@ -1,22 +1,22 @@
 /* The final gather: its rows, kept, and their products with radiosities.
  *
- * A row holds the form factors from a leaf to the leaves that it sees. It is made by rays
+ * A row holds the form factors from a leaf to the leaves in its view, made by rays
  * (rays.c) or, where nothing is in the way, by exact factors (exact.c).
  *
- * As a sender a leaf is no constant: where it has sisters, B is linear over it,
+ * As a sender a leaf is no constant: over a leaf with sisters B is linear,
  *
  *     B(x) = b + s sum over k of b_k (w_k - 1/3),    s = 1, of the middle child s = -1,
  *
  * with the barycentric coordinates w of x in the leaf and the means b_0, b_1, b_2 of its
- * parent's outer children: the linear function that has these means. (Over the parent
- * itself s is 2.) It is linear in the radiosities, so the row has terms for the sisters,
+ * parent's outer children: the linear function with these means. (Over the parent itself
+ * s is 2.) B(x) is linear in the radiosities, too, so the row has terms for the sisters,
  * which sum to 0. Constants move light outwards at each reflection where leaves are as
  * wide as the gap between them. Where the linear function is below 0 somewhere, its slope
  * is made less.
  *
- * Rejected: B interpolated between corners that neighbours share. It needs to know over
- * which edges light goes on smoothly, and at shadows, where interpolation matters, it
- * does not. */
+ * Rejected: B interpolated between shared corners of neighbours. Interpolation needs to
+ * know over which edges light goes on smoothly, and at shadows, where interpolation
+ * matters, light does not. */
 #include "rad/beyond/gather/gather.h"
 
 #include <math.h>
@@ -27,23 +27,23 @@
 #include "rad/beyond/gather/receiver.h"
 #include "rad/beyond/sequence.h"
 
-/* A lamp emits more than GLOW times the mean radiosity, if surfaces that do so are LAMP
+/* A lamp emits more than GLOW times the mean radiosity, if surfaces doing so are LAMP
  * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces
- * are as bright, as in a furnace, there is none. Where little is reflected, BRIGHT times
- * the mean that is reflected is enough; a bright patch reflects more than that. */
+ * are as bright, as in a furnace, there is no lamp. Where little is reflected, BRIGHT
+ * times the mean reflected light is enough; a bright patch reflects more than this. */
 static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
 
-/* Where no more than this part of the surface emits, all of that is lamps: a dim one may
- * be all the light of a room beside a bright one, and rays would hardly find it. */
+/* Where no more than this part of the surface emits, all emitters are lamps: a dim one,
+ * hardly found by rays, may be all the light of a room beside a bright one. */
 static const double FEW = 0.05;
 
-/* Most by which the slope of B over a leaf is more than that over its parent: the square
- * root of the distance from an edge makes it 1.41, and links are not right enough there
- * to tell more. */
+/* Largest ratio of the slope of B over a leaf to the slope over its parent: the square
+ * root of the distance from an edge makes 1.41, and links are not right enough there to
+ * tell more. */
 static const double STEEPEST = 1.5;
 
-/* A leaf is too near if the square of the length of the ray that has met it is less than
- * this times the leaf's area. (pi .1 = 1/3: see path_ends().) */
+/* A leaf is too near if the square of the length of a ray to it is less than this times
+ * the leaf's area. (pi .1 = 1/3: see path_ends().) */
 static const double NEAR = 0.1;
 
 /* Rays of a leaf halve at 2, 8, 32, ... times MANY leaves; fewest rays of a leaf. */
@@ -83,7 +83,7 @@ double forest_mean_reflected(const struct forest *forest)
     return sum / scene_own_area(forest->scene);
 }
 
-/* The surfaces that emit more than `least`, over all bands: their area, in square scene
+/* The surfaces emitting more than `least`, over all bands: their area, in square scene
  * units, and the mean of their radiosity, W/m^2. */
 struct emitters {
     double area, mean;
@@ -114,8 +114,8 @@ static double least_of_lamps(const struct model *model)
                 BRIGHT * forest_mean_reflected(model->forest));
 }
 
-/* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
- * before, and the time grows only with the root of their number. */
+/* Halves the rays for each fourfold of MANY leaves: a picture of the leaves is as smooth
+ * as before, and the time grows only with the root of their number. */
 static int rays_for(int rays, int64_t leaves)
 {
     for (; leaves >= 2 * MANY && rays >= 2 * FEWEST; leaves /= 4)
@@ -128,8 +128,8 @@ static bool is_cut(const struct final_gather *gather, int32_t patch)
     return gather->cut && gather->cut[patch];
 }
 
-/* How far apart radiosities are, over all bands; or `scaled`: in the band where that is
- * the largest part of the band's mean, the same part of the mean over all bands. */
+/* How far apart radiosities are, over all bands; or `scaled`: the largest difference of a
+ * band as a part of the band's mean, times the mean over all bands. */
 static double difference(const struct final_gather *g, struct rgb a, struct rgb b,
                          bool scaled)
 {
@@ -237,8 +237,8 @@ void final_gather_destroy(struct final_gather *gather)
 
 /* --- rows --- */
 
-/* The factor, at most 1, that a parent's slope is made less by, so that B is not below 0
- * over any child, [4] of them. */
+/* The factor, at most 1, of a parent's slope that keeps B from falling below 0 over any
+ * child, [4] of them. */
 static double slope_part(const struct rgb *b, struct rgb middle)
 {
     double part = 1.0;
@@ -255,7 +255,7 @@ static double slope_part(const struct rgb *b, struct rgb middle)
 }
 
 /* The mean of the outer children of a patch, over all bands; `off`, [3], becomes their
- * differences from it. */
+ * differences from this mean. */
 static double outer_mean(const struct forest *forest, int32_t patch, double *off)
 {
     const struct rgb *b = forest->radiosity + forest->patches[patch].children;
@@ -266,9 +266,9 @@ static double outer_mean(const struct forest *forest, int32_t patch, double *off
 }
 
 /* To an edge where surfaces meet B rises ever more steeply: the factor by which its slope
- * over the parent of a leaf, along that over the grandparent, is more than the latter, if
- * both lead up to the leaf. The slope over the leaf is as much more again, if B stays
- * above 0. */
+ * over the parent of a leaf, along the slope over the grandparent, is more than the
+ * latter, if both lead up to the leaf. The slope over the leaf is as much more again, if
+ * B stays above 0. */
 static double steepening(const struct forest *forest, int32_t leaf)
 {
     const struct patch *patches = forest->patches;

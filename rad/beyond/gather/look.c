@@ -1,7 +1,7 @@
 /* Looks at leaves, before rows are made.
  *
  * A few rays from each quarter of a leaf, in the same directions, tell whether its light
- * varies, and how noisy it is: by rays, and by segments to lamps. */
+ * varies, and with how much noise: by rays, and by segments to lamps. */
 #include "rad/beyond/gather/gather.h"
 #include "rad/beyond/gather/receiver.h"
 
@@ -11,8 +11,8 @@
 #include "geom/hash.h"
 #include "rad/beyond/sample.h"
 
-/* The variance by chance, over bands, that the quarters have in common: their rays have
- * the same directions. `each`, [rays]: H by each ray, summed over quarters. */
+/* The variance by chance, over bands, common to the quarters: their rays have the same
+ * directions. `each`, [rays]: H by each ray, summed over quarters. */
 static double variance_in_common(const struct rgb *each, int rays, const struct rgb *rho)
 {
     double variance = 0.0;

@@ -2,10 +2,10 @@
  *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
  * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
- * point that it met receives light from a lamp, by one segment, and from one more ray,
- * until a ray ends far enough away. That is a path tracer for near surfaces and radiosity
- * for the rest. In pixels one ray is aimed at a bright patch from there, too: else single
- * pixels shine along all edges of a room. */
+ * point met receives light from a lamp, by one segment, and from one more ray, until a
+ * ray ends far enough away: a path tracer for near surfaces, and radiosity for the rest.
+ * In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
+ * along all edges of a room. */
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
@@ -14,11 +14,10 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* Most points of a path; those from which it goes on in any case. */
+/* Most points of a path; those from which paths go on in any case. */
 enum { PATH_MOST = 256, PATH_SURE = 2 };
 
-/* True if the point that a path has met is of a lamp, which is aimed at from x on its
- * way. */
+/* True if the point met by a path is of a lamp, which is aimed at from x on its way. */
 static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
@@ -28,13 +27,13 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
     return !point_is_beside(x, &t);
 }
 
-/* Russian roulette: the path goes on, for all that would have, with the probability of
- * the largest reflectance. The mesh's light is added in the mean whether it goes on or
- * not, so that rows still sum to 1. That is noise where the mesh is far from right, as in
- * the shade at the edge of a wide bright leaf, so few paths get here. Deep in a gap
- * between bright surfaces paths are long: if they ended soon with the mesh's light, which
- * is the mean of inside and outside, gaps would shine. Rejected: ending half of the
- * longest and giving their light to the others; what is then taken off the mesh makes
+/* Russian roulette: the path goes on, for those that end, too, with the probability of
+ * the largest reflectance. The mesh's light is added where a path ends, and taken off
+ * where one goes on, so rows still sum to 1. That is noise where the mesh is far from
+ * right, as in the shade at the edge of a wide bright leaf, so few paths get here. Deep
+ * in a gap between bright surfaces paths are long: if they ended soon with the mesh's
+ * light, the mean of inside and outside, gaps would shine. Rejected: ending half of the
+ * longest and giving their light to the others; the light then taken off the mesh makes
  * large rows of both signs, by which light at rho .999 is not found. */
 static bool survives(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
@@ -53,9 +52,8 @@ static bool survives(struct receiver *r, const struct point *point, bool aimed, 
     return u < most;
 }
 
-/* A path that has met the point goes on from there: adds the emission, unless it is
- * `aimed` at, and the light of a lamp, and makes a ray of the seed's. False if the point
- * absorbs all. */
+/* A path goes on from the point met: adds the emission, unless `aimed` at, and the light
+ * of a lamp, and makes a ray of the seed's. False if the point absorbs all. */
 static bool leave(struct receiver *r, const struct point *point, bool aimed,
                   uint64_t seed, struct rgb *weight, struct vec3 *origin,
                   struct vec3 *direction)
@@ -84,9 +82,9 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
     return !point_is_beside(x, &t) && (r->points || path_ends(r, met, x));
 }
 
-/* True if the bright patch that a path has met, from x on its way, is aimed at from
- * there: in pixels, if a point of all bright patches, chosen by power, brings no more
- * light than a ray that meets this one. (A row would no longer sum to 1.) */
+/* True if the bright patch met by a path, from x on its way, is aimed at from x: in
+ * pixels, if a point of all bright patches, chosen by power, brings no more light than a
+ * ray meeting this one. (A row would no longer sum to 1.) */
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {

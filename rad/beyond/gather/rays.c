@@ -1,19 +1,18 @@
 /* Rays of the final gather.
  *
- * Rays leave a receiver from points spread over it, distributed as the cosine, and each
- * that ends on a front adds 1 / N to the weight of the leaf that it meets. So in a
- * closed scene each row sums to 1, by construction and not by luck. Noise is their only
- * fault, and lamps are where most of it would come from: these are aimed at (aim.c), and
- * rays that meet a lamp count its reflected light and not its emission. Bright patches
- * are aimed at, too: a ray that was not, and meets one, is put aside, and the others
- * stand for all directions but those of bright patches,
+ * N rays leave a receiver from points spread over it, distributed as the cosine, and each
+ * ending on a front adds 1 / N to the weight of the leaf met. So in a closed scene each
+ * row sums to 1, by construction and not by luck. Noise is the only fault, and most would
+ * come from lamps: these are aimed at (aim.c), and rays meeting a lamp count its
+ * reflected light and not its emission. Bright patches are aimed at, too: a ray meeting
+ * one by chance is put aside, and the others stand for all other directions,
  *
  *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
  *
- * so rows still sum to 1. Beside a bright patch all this does not apply: rays find it
- * often enough, and factors of a few points of it would vary without bound.
+ * so rows still sum to 1. Beside a bright patch all this does not apply: rays find the
+ * patch often enough, and factors of a few of its points would vary without bound.
  *
- * A ray that ends too near goes on as a path (path.c). */
+ * A ray ending too near goes on as a path (path.c). */
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
@@ -35,7 +34,7 @@ static void look_again(struct receiver *r, struct vec3 origin, struct vec3 direc
         r->escaped++;
 }
 
-/* A row's ray begins a path: the leaf that it has met is too near. */
+/* A row's ray begins a path: the leaf met is too near. */
 static void begin_path(struct receiver *r, const struct point *met, bool aimed,
                        const struct rgb *weight)
 {
@@ -47,7 +46,7 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     r->near = g->place[met->patch];
     RESERVE(near->paths, &near->path_capacity, near->path_count + 1);
     near->paths[near->path_count++] = (struct gather_path){.place = r->near};
-    if (aimed) /* segments bring it, so the path does not count it */
+    if (aimed) /* segments bring the emission, which the path does not count */
         receiver_add_near(r, weight, emission, 1.0);
 }
 
@@ -85,8 +84,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     path_go_on(r, point, origin, aimed, weight, seed, true);
 }
 
-/* Adds the light of ray i's path to the sums, and to the half of the rays that it belongs
- * to. */
+/* Adds the light of ray i's path to the sums, and to its half of the rays. */
 static void count_light(struct receiver *r, int i, int half)
 {
     for (int c = 0; c < BANDS; c++) {
@@ -100,7 +98,7 @@ static void count_light(struct receiver *r, int i, int half)
     }
 }
 
-/* Adds the variance by rays other than those that have met bright patches. */
+/* Adds the variance by rays, without those put aside. */
 static void add_variances(struct receiver *r)
 {
     double count[2] = {(r->rays + 1) / 2 - r->sums->aside[0],
@@ -116,9 +114,8 @@ static void add_variances(struct receiver *r)
     }
 }
 
-/* Adds the light of the row's paths to that of the leaves too near that they have
- * met first. `factor`: of their weights, and so of the area: else leaves would be seen
- * too bright from afar. */
+/* Adds the light of the row's paths to the leaves too near met first. `factor`: of the
+ * paths' weights, and so of the area: else leaves would be seen too bright from afar. */
 static void add_paths(struct gather_nears *near, const struct receiver *r, double factor)
 {
     double area = factor * r->facet.area;
@@ -126,16 +123,16 @@ static void add_paths(struct gather_nears *near, const struct receiver *r, doubl
         const struct gather_path *path = &near->paths[i];
         struct gather_near *item = &near->items[path->place];
         int64_t units = gather_units(area / r->rays, near->unit_area);
-        item->area += units > 0 ? units : 1; /* so that the leaf gets a number */
+        item->area += units > 0 ? units : 1; /* above 0: the leaf gets a number */
         for (int c = 0; c < BANDS; c++)
             item->watts[c] += gather_units(area * path->light.band[c], near->unit_watts);
     }
     near->path_count = 0;
 }
 
-/* Aims at the bright patches, and makes the light of rays, which have not counted them,
- * that of all other directions, so that the row still sums to 1. `source`: of the row
- * before rays were fired. */
+/* Aims at the bright patches, and makes the light of rays, found without these, the light
+ * of all other directions, so the row still sums to 1. `source`: of the row before rays
+ * were fired. */
 static void add_bright(struct receiver *r, struct rgb source)
 {
     struct final_gather *g = r->gather;
@@ -203,7 +200,7 @@ void receiver_fire(struct receiver *r)
     }
     receiver_find_outside(r);
     if (r->sums->inside == r->rays)
-        return; /* what could be aimed at would be walls that things touch */
+        return; /* the only targets would be walls touched by things */
     add_variances(r);
     add_bright(r, source);
     if (r->escaped < r->rays)

@@ -1,5 +1,4 @@
-/* Rows of leaves, and the light at points: each is made by the first way that can make
- * it. */
+/* Rows of leaves, by exact factors or by segments and rays, and the light at points. */
 #include "rad/beyond/gather/gather.h"
 #include "rad/beyond/gather/met.h"
 

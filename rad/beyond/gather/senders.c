@@ -1,16 +1,16 @@
 /* The tree of senders.
  *
- * How much light a node brings is estimated as that of a disc,
+ * The light of a node is estimated as the light of a disc,
  *
  *     H = cos cos' P / (pi (d^2 + r^2)),
  *
  * with its power P, its distance d, and r^2 the sum of the squares of both radii. Cosines
- * are those of the middle, the largest that the bounds of normals allow; or where the
- * node reaches below a horizon, means over the part above.
+ * are those of the middle, the largest within the bounds of normals; or where the node
+ * reaches below a horizon, means over the part above.
  *
  * A bright wall is seldom bright all over: beside a lamp it has a strip, below one a
- * spot. Points all over the wall would seldom be there. So a sender is the largest patch
- * that is bright and even. */
+ * spot. Points all over the wall would seldom be there. So a sender is the largest bright
+ * and even patch. */
 #include "rad/beyond/gather/senders.h"
 
 #include <math.h>
@@ -51,11 +51,11 @@ struct rgb sender_light(const struct senders *senders, int32_t patch)
 
 struct building {
     struct senders *senders;
-    double *power; /* [forest->count] of the senders that a patch is, or has below it */
+    double *power; /* [forest->count] of the senders at a patch or below */
     double *before; /* [tree->root_count + 1] of those before a place in the tree */
 };
 
-/* The mean square of the light that leaves of the patch send, (W/m^2)^2. */
+/* The mean square of the light of the patch's leaves, (W/m^2)^2. */
 static double mean_square(const struct senders *senders, int32_t patch)
 {
     const struct patch *self = &senders->model->forest->patches[patch];
@@ -67,7 +67,7 @@ static double mean_square(const struct senders *senders, int32_t patch)
     return 0.25 * sum;
 }
 
-/* Finds the senders in a patch; `part`: the one that it is part of, or -1. */
+/* Finds the senders in a patch; `part`: the one around the patch, or -1. */
 static void find_senders(struct building *b, int32_t patch, int32_t part)
 {
     struct senders *senders = b->senders;
@@ -95,7 +95,7 @@ static double power_of(const struct building *b, int32_t node)
     return b->before[cluster->end] - b->before[cluster->first];
 }
 
-/* Appends a node that has senders, and then those below it. Returns its number. */
+/* Appends a node with senders, and then such nodes below. Returns its number. */
 static int32_t add_node(struct building *b, int32_t node)
 {
     struct senders *senders = b->senders;
@@ -170,8 +170,8 @@ static double facing_most(const struct bounds *bounds, struct vec3 v)
            real_max(low->y * v.y, high->y * v.y) + real_max(low->z * v.z, high->z * v.z);
 }
 
-/* The mean of the heights above 0 of a node at this height, which reaches as far above it
- * as below; heights below 0 count as 0. */
+/* The mean of the heights above 0 of a node at this height, reaching as far above as
+ * below; heights below 0 count as 0. */
 static double mean_above(double height, double reach)
 {
     double top = height + reach;

@@ -27,7 +27,7 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
     }
 }
 
-/* The triangle that blocks a segment to a sender, or -1. */
+/* The triangle blocking a segment to a sender, or -1. */
 static inline int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
                                  struct vec3 to, int32_t root)
 {
