@@ -1,6 +1,5 @@
-/* The tree above the roots on all ranks: rank 0 builds the tree, which travels like the
- * octree (mpi/broadcast.c). Clusters have no home: each rank gets the sums of their
- * flux. */
+/* The tree above the roots on all ranks: built by rank 0, sent like the octree
+ * (mpi/broadcast.c). Clusters have no home: each rank gets the sums of their flux. */
 #include "mpi/beyond/beyond.h"
 
 #include <string.h>

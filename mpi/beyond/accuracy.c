@@ -6,14 +6,14 @@
  *
  *     claim^2 = E^2 + deviation,        E^2 = rays^2 + mesh^2.
  *
- * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 exceeds their
- * sum by more than chance, the mesh has the surplus. If the claim is above the goal, the
- * next round brings E to AIM of it, which leaves room for the deviation, with both parts
- * alike unless one is small already: noise falls like N^-0.6 and costs N, the mesh's part
- * falls like the third root of epsilon, and leaves grow like the square root of 1 /
- * epsilon, so both cost about as much. The links go on from where they are, from their
- * own solution: a run is the same whether it is resumed before the gather or never
- * interrupted. Leaves that the gather has split stay split.
+ * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 exceeds the
+ * sum of their squares by more than chance, the mesh has the surplus. If the claim is
+ * above the goal, the next round brings E to AIM of it, which leaves room for the
+ * deviation, with both parts alike unless one is small already: noise falls like N^-0.6
+ * and costs N, the mesh's part falls like the third root of epsilon, and leaves grow like
+ * the square root of 1 / epsilon, so both cost about as much. The links go on from where
+ * they are, from their own solution: a run is the same whether it is resumed before the
+ * gather or never interrupted. Leaves that the gather has split stay split.
  *
  * The limit in the way is named. The mesh is at its end where memory, iterations,
  * --max-level or --min-area are, or where epsilon was lowered much without effect; rays,

@@ -3,8 +3,8 @@
  * Each rank deals all of its links to all ranks, so each gets its part of every
  * neighbourhood, with the links predicted too low and too high. No prediction is needed,
  * and the links that stay, over which light is transferred, end up even, too. The work of
- * the slowest rank, in means, and the bytes of moved links (phr ROOM --epsilon E
- * --final-gather 0 --balance B --stats FILE, "work", "splitting"):
+ * the slowest rank, in means, and the bytes of moved links
+ * (phr ROOM --epsilon E --final-gather 0 --balance B --stats FILE, "work", "splitting"):
  *
  *     room, epsilon, ranks     greedy          in turn
  *     1,004    1e-4     3      1.54   0.11 MB  1.02   0.58 MB

@@ -12,7 +12,7 @@ struct accuracy {
     bool clear;            /* the mesh's part of the error exceeds the doubt */
     double coarse;         /* the mesh's part of the error for coarse_epsilon */
     double coarse_epsilon; /* an epsilon of a round before; 0: none */
-    enum hold hold;        /* the limit met */
+    enum hold hold;        /* the limit ending the rounds */
 };
 
 /* The answer of the final gather. */
@@ -72,9 +72,9 @@ struct vote descent_vote(struct solver *solver, const struct ballot *sum);
  * false on all ranks if a signal has ended the step. Pre: there are clusters. */
 bool solver_final_gather(struct solver *solver, struct vote *vote);
 
-/* Collective. Step 9, if there is one, and with --accuracy its verdict. After
- * FINISH_AGAIN criterion and vote are those of the links, for more passes, or for this
- * step again with more rays. */
+/* Collective. Step 9, if there is one, and with --accuracy the verdict on its answer.
+ * After FINISH_AGAIN criterion and vote are those of the links, for more passes, or for
+ * this step again with more rays. */
 enum finish solver_finish(struct solver *solver, struct vote *vote);
 
 #endif

@@ -16,16 +16,16 @@
  * scalar products are the same on all ranks.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
- * light there (rays.c). There a leaf is darker than in the mean, so its rest, which
- * others see, is brighter than the mean. With the part n of the leaf's light for near
- * receivers and the mean radiosity L of the light they met, far ones are shown B + n (B -
- * L), and less where n > 1/2: min(1, 2 (1 - n)) of the difference. (n / (1 - n) would be
- * the whole, and noise where hardly any far ray meets the leaf.) As a part of W this
- * would make rows of both signs, and light in bright rooms would grow with each
- * reflection; a factor of B makes none. The factors are those of the answer before, so
- * light is solved for in turns, until one changes nothing. In the first turn they are 1:
- * by the links' light, which may lack much in a gap, some would be high enough to make a
- * bright room reflect more than it receives.
+ * light there (rays.c). There the leaf is darker than in the mean, so its rest, seen by
+ * others, is brighter. With the part n of the leaf's light for near receivers and the
+ * mean radiosity L met by these, far ones are shown B + n (B - L), and less where
+ * n > 1/2: min(1, 2 (1 - n)) of the difference. (n / (1 - n) would be the whole, and
+ * noise where hardly any far ray meets the leaf.) As a part of W this would make rows of
+ * both signs, and light in bright rooms would grow with each reflection; a factor of B
+ * makes none. The factors are those of the answer before, so light is solved for in
+ * turns, until one changes nothing. In the first turn they are 1: by the links' light,
+ * which may lack much in a gap, some would be high enough to make a bright room reflect
+ * more than it receives.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part seen by others is brighter than the mean, by the inverse of its
@@ -36,14 +36,14 @@
  * seen in part, so W loses or makes some thousandths of the light: with rho .99 a
  * hundredfold would be missing in the end. The loss is made up for within W, in
  * proportion to the irradiances of the turn before: with these, h, the areas a, the kept
- * shares k of the light leaving, 1 but where a leaf faces out of the scene, and W' = W +
- * h (k a - W^T a)^T / (a^T h),
+ * shares k of the light leaving, 1 but where a leaf faces out of the scene, and
+ * W' = W + h (k a - W^T a)^T / (a^T h),
  *
  *     a^T W' = (k a)^T,
  *
  * whatever light there is. So the balance of the answer is true. One factor for the
- * irradiances of the answer would do so as well, but by the hundredfold, and change the
- * light straight from lamps, too.
+ * irradiances of the answer would make the balance true as well, but would correct by the
+ * hundredfold, light straight from lamps included.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
@@ -74,8 +74,8 @@ static const double CRACKS = 1e-5;
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
-/* Leaves with less than this part of the mean radiosity are solved for as if having so
- * much. */
+/* Leaves with less than this part of the mean radiosity are solved for as if this
+ * bright. */
 static const double DARK = 1e-3;
 
 /* --- rows --- */
@@ -233,7 +233,7 @@ static void find_shown(struct gathering *g, const struct rgb *b)
     alloc_free(watts);
 }
 
-/* The area of a leaf whose emission arrives: of a lamp all outside of things, for
+/* The area of a leaf whose emission arrives: of a lamp the part outside of things, for
  * segments pass through a ceiling in the lamp's plane; else the bare area. The top of a
  * lamp at the ceiling shines out of the room: nothing of its light is kept. */
 static double shining_area(const struct gathering *g, int64_t i)
@@ -387,7 +387,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
-/* Collective. For pictures, of leaves: light straight from lamps, and the open shares. */
+/* Collective. The answer for pictures: light straight from lamps, and open shares. */
 static void share_answer(struct gathering *g)
 {
     struct answer *answer = g->solver->beyond->answer;

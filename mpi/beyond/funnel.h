@@ -1,5 +1,5 @@
-/* Records from all ranks to rank 0, which takes one by one from any rank, with no more
- * than a piece of each other rank's in memory. */
+/* Records from all ranks to rank 0, which takes single records from the rank of its
+ * choice, with no more than a piece of each other rank's in memory. */
 #ifndef MPI_BEYOND_FUNNEL_H
 #define MPI_BEYOND_FUNNEL_H
 
@@ -9,7 +9,7 @@
 struct spout {
     const char *records; /* this rank's own, or the piece at hand */
     char *piece;         /* owned; NULL for this rank's own */
-    int64_t at, count;   /* next record, and number of records, of the piece */
+    int64_t at, count;   /* next record of the piece, and their number */
     int64_t left;        /* records still with their rank */
 };
 

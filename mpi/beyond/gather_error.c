@@ -1,10 +1,10 @@
 /* Errors of a final gather, leaf by leaf.
  *
- * A row sees each leaf by its mean, while B varies over it; and it has a number of rays
- * that were chosen among many. The variances of both add up: each leaf's H, times rho, is
- * off by their root. The first is taken from how B varies in the parent, the second from
- * the scatter of the light of single rays. The part of B that the solution may lack comes
- * on top: a furnace, whose rows are exact, has no other error. */
+ * A row sees each leaf by its mean, while B varies over the leaf; and a row has some rays
+ * chosen among many. The variances of both add up: each leaf's H, times rho, is off by
+ * their root. The first is taken from how B varies in the parent, the second from the
+ * scatter of the light of single rays. The part of B missing from the solution comes on
+ * top: a furnace, whose rows are exact, has no other error. */
 #include "mpi/beyond/gathering.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@
 #include "geom/alloc.h"
 #include "mpi/beyond/beyond.h"
 
-/* The light of a root that is not divided varies by about the first part, or the second
- * times its size over its distance: seen from near, it may be lit unlike its mean. */
+/* The light of an undivided root varies by about the first part, or the second times its
+ * size over its distance: seen from near, a root may be lit unlike its mean. */
 static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
 
 /* The error of 95 % of leaves is less than this many deviations: these are estimated for
@@ -25,7 +25,7 @@ static const double BOUND = 2.5;
 static const double FACTORS = 4e-4;
 
 /* Classes of leaves by their light: the last has 2^(BRIGHTEST - 1) times the mean and
- * more. Fewest leaves, counted in each band, that a ratio is estimated over. */
+ * more. Fewest leaves, counted in each band, to estimate a ratio over. */
 enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
 
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
@@ -49,9 +49,9 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
     return deviation;
 }
 
-/* Collective. Variance of H that comes from factors of lamps, and from B varying within
- * the leaves that rows see, (W/m^2)^2. B varies independently in different leaves, so
- * their errors add up as variances. Pre: g->radiosity is the solution. */
+/* Collective. Variance of H from factors of lamps, and from B varying within leaves seen
+ * by rows, (W/m^2)^2. B varies independently in different leaves, so their errors add up
+ * as variances. Pre: g->radiosity is the solution. */
 static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 {
     const struct final_gather *gather = g->gather;
@@ -73,9 +73,9 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     gathering_share_rows(g, variance);
 }
 
-/* A leaf whose rays have missed a small bright thing that one of its sisters has found is
- * too dark, and its variance is too small as well: it gets the mean of the sisters', each
- * that of one ray, where that is more. `rays`: of each leaf; or segments. */
+/* A leaf whose rays have missed a small bright thing found by one of its sisters is too
+ * dark, with too small a variance as well: the leaf gets the mean of the sisters', each
+ * of one ray, where larger. `rays`: of each leaf; or segments. */
 static void raise_to_sisters(const struct gathering *g, const int *rays,
                              struct rgb *variance)
 {
@@ -117,7 +117,7 @@ static int class_of(double light, double mean)
     return place < 0 ? 0 : place < CLASSES ? place : CLASSES - 1;
 }
 
-/* A leaf's H in a band, W/m^2; 0 if it reflects none. */
+/* A leaf's H in a band, W/m^2; 0 if the leaf reflects none. */
 static double irradiance_of(const struct gathering *g, int64_t leaf, int band)
 {
     const struct material *m = gathering_material(g, leaf);
@@ -153,14 +153,14 @@ static void classify(const struct gathering *g, const struct rgb *halves,
     alloc_free(light);
 }
 
-/* The ratio of the sequence's variance to that by chance, of reflected light, by the
- * variances of the leaves of a class by their halves and by chance, and of those next to
- * it while they are few. A quarter of the squared difference of two halves is the
- * variance of their mean if they have nothing to do with each other, as if by chance,
- * where the ratio is 1. Of a sequence the second half falls into the gaps of the first:
- * where variance falls threefold with twice the rays, as in the Cornell box and in rooms,
- * it is half of that. There the ratio is small. Where a few rays bring most light, as in
- * a storey below a stairwell, it is not. */
+/* The ratio of the sequence's variance to the one by chance, of reflected light, by the
+ * variances of the leaves of a class by their halves and by chance, and of the next
+ * classes while leaves are few. A quarter of the squared difference of two halves is the
+ * variance of their mean if the two are independent, as if by chance, where the ratio is
+ * 1. Of a sequence the second half falls into the gaps of the first: where variance falls
+ * threefold with twice the rays, as in the Cornell box and in rooms, the variance is half
+ * of that. There the ratio is small, but not where a few rays bring most light, as in a
+ * storey below a stairwell. */
 static double ratio_of_sequence(const struct noise *classes, int class)
 {
     struct noise all = {0};
@@ -176,9 +176,8 @@ static double ratio_of_sequence(const struct noise *classes, int class)
     return ratio / (2.0 - ratio);
 }
 
-/* Collective. Variance of H that comes from the choice of rays: the variance by
- * chance, times the ratio of the sequence's variance to it, estimated over all leaves
- * that have about as much light. */
+/* Collective. Variance of H from the choice of rays: the variance by chance, times the
+ * sequence's ratio, estimated over all leaves with about as much light. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
     const size_t bytes = sizeof *variance;

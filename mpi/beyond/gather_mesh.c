@@ -1,23 +1,23 @@
 /* The mesh of a final gather.
  *
- * The links have split patches where they exchange much light, whether it varies there or
- * not. Before rows are made, a few rays look at the quarters of each leaf. Where their
+ * The links have split patches where they exchange much light, whether light varies there
+ * or not. Before rows are made, a few rays look at the quarters of each leaf. Where their
  * light differs by more than chance explains, the leaf is split and its children are
  * looked at, and so on. The goal is an even squared error, by area: a leaf is split if
  *
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
- * so that all leaves have about the same share of it. Where a thing stands on a leaf,
+ * so all leaves have about the same share of the error. Where a thing stands on a leaf,
  * chance counts as well: below a house the light of a lawn is another one. If all of its
  * light falls on one quarter, a leaf has a variance of 3 times the square of its light,
- * at most: a leaf that could not even then be split, by the light of the links, is not
+ * at most: leaves too dark, by the light of the links, to be split even then are not
  * looked at. In a scene of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
- * over a leaf it is linear, and where it bends (rad/beyond/gather_bends.c) the leaf is
- * split. But a root that is not divided has no parent: where a surface is many small
- * roots, each link to one tells too little to divide it, and B would be constant over
- * each. So these are looked at, too.
+ * over a leaf B is linear, and a leaf where B bends (rad/beyond/gather_bends.c) is split.
+ * But an undivided root has no parent: where a surface is many small roots, each link to
+ * one tells too little to divide the root, and B would be constant over each. So these
+ * are looked at, too.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
@@ -25,8 +25,8 @@
  * plain wall few. So do segments to lamps, which are many in a half-shade where rays may
  * be few.
  *
- * Looks also measure the work of a ray. Further looks and rows are dealt by the work that
- * this predicts. */
+ * Looks also measure the work of a ray. Further looks and rows are dealt by the work
+ * predicted so. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
@@ -46,8 +46,8 @@ static const double MESH = 0.005;
 static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
 
 /* Where a thing stands on a leaf, its light has a variance of at least this part of its
- * square: few rays of a look may miss a strip of sunlit floor that reaches below a wall,
- * of which a dark room would have the mean. */
+ * square: few rays of a look may miss a strip of sunlit floor reaching below a wall, of
+ * which a dark room would have the mean. */
 static const double SPREAD_CUT = 0.0625;
 
 /* Light of the mean radiosity of all surfaces, lamps included, has about this variance by
@@ -82,10 +82,10 @@ struct looking {
     uint8_t *open;   /* [roots] 1: leaves of the root have exact rows */
     struct known *known; /* [forest->count] of leaves */
     int64_t known_capacity;
-    double unseen;   /* sum of area * (rho H)^2 of leaves that are not looked at */
+    double unseen;   /* sum of area * (rho H)^2 of leaves not looked at */
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
-    const int32_t *leaves;     /* [count] that are looked at */
+    const int32_t *leaves;     /* [count] looked at */
     struct gather_look *looks; /* [looked] of this rank */
     int64_t looked;
 };
@@ -93,7 +93,7 @@ struct looking {
 /* --- work --- */
 
 /* The predicted work of leaves, in tests, [count], to be freed: of their rows in `mesh`;
- * or, if that is NULL, of looks. */
+ * or, with NULL, of looks. */
 static int64_t *predict_work(const struct looking *l, const int32_t *leaves,
                              const struct gather_mesh *mesh, int64_t count)
 {
@@ -204,7 +204,7 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
                        look->of_segment, look->fixed, look->work};
 }
 
-/* (rho H)^2 of a leaf, as links or looks tell it. */
+/* (rho H)^2 of a leaf, from links or looks. */
 static struct rgb squares_of_light(const struct forest *forest, int32_t leaf)
 {
     struct rgb light =
@@ -314,9 +314,9 @@ static void know_exact(struct looking *l, bool all)
     }
 }
 
-/* What is known of a leaf that needs rays before it is looked at: a guess at the variance
- * of rho H by one ray, by the light that the leaf has, as links tell it, and by light of
- * the mean radiosity, which may arrive, too. */
+/* What is known of a leaf in need of rays before the look: a guess at the variance of rho
+ * H by one ray, by the light of the leaf, from the links, and by light of the mean
+ * radiosity, which may arrive, too. */
 static struct known guess_of(const struct looking *l, int32_t leaf)
 {
     const struct forest *forest = l->solver->model.forest;
@@ -326,7 +326,7 @@ static struct known guess_of(const struct looking *l, int32_t leaf)
     return (struct known){guess, guess, 0.0f, 1.0f};
 }
 
-/* Before there are looks: guesses for all leaves that need rays. */
+/* Before there are looks: guesses for all leaves in need of rays. */
 static void know_nothing(struct looking *l)
 {
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
@@ -362,9 +362,9 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
     return leaves;
 }
 
-/* Gives leaves that were not looked at the mean noise, relative to their light, and the
- * mean work of those that were, or a guess if none was. Of those that were, too, the
- * noise is made more like the mean. */
+/* Gives leaves not looked at the mean noise, relative to their light, and the mean work
+ * of the others, or a guess if there are none. The noise of the others, too, is made more
+ * like the mean. */
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
@@ -420,7 +420,7 @@ static void refine(struct looking *l)
     guess_unseen(l);
 }
 
-/* Inner patches are cut where a child is. Patches that looks have made are all known. */
+/* Inner patches are cut where a child is. Patches made by looks are all known. */
 static void raise_cuts(struct gather_mesh *mesh, const struct forest *forest)
 {
     RESERVE(mesh->cut, &mesh->cut_capacity, forest->count);

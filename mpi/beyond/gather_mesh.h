@@ -1,11 +1,11 @@
-/* The mesh of a final gather, and the rays that each leaf of it is worth. */
+/* The mesh of a final gather, and the rays that each leaf is worth. */
 #ifndef MPI_BEYOND_GATHER_MESH_H
 #define MPI_BEYOND_GATHER_MESH_H
 
 #include "mpi/solver.h"
 #include "rad/beyond/gather/gather.h"
 
-/* The leaves that have an area, in the order of forest_order(). */
+/* The leaves with an area, in the order of forest_order(). */
 struct gather_mesh {
     int32_t *leaves; /* [count] local numbers */
     int *rays;       /* [count] to be fired for the row */
@@ -16,19 +16,19 @@ struct gather_mesh {
     uint8_t *cut;    /* [forest->count] 1: a thing stands on the patch, or across it */
     int64_t cut_capacity;
     int64_t split;   /* leaves split */
-    bool limited;    /* the memory limit has kept others from it */
+    bool limited;    /* the memory limit has kept others from being split */
     int64_t traced;  /* rays and segments of looks on this rank */
 };
 
 /* Collective. Splits leaves over which light varies, as far as --max-level, --min-area
  * and --memory allow with `links` links, and gives each leaf rays. False if a signal on
- * any rank has ended it: then the mesh can only be freed. */
+ * any rank has ended the work: then the mesh can only be freed. */
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh);
 void gather_mesh_free(struct gather_mesh *mesh);
 
-/* Collective. Returns 1 for each root of which it is proved that nothing stands between
- * it and the roots that it faces, else 0: [roots], to be freed. All are 0 if the open
- * ones have less than half of the scene's area. Enters the work into the ledger. */
+/* Collective. Returns 1 for each root proved to have nothing between itself and the roots
+ * it faces, else 0: [roots], to be freed. All are 0 if the open ones have less than half
+ * of the scene's area. Enters the work into the ledger. */
 uint8_t *gather_find_open_roots(struct solver *solver, struct final_gather *gather);
 
 /* Shares shots in proportion to `worth`, [count], in any unit: `shots`, [count], at least

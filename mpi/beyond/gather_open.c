@@ -1,10 +1,10 @@
-/* Roots that may have exact rows in a final gather: nothing stands between them and those
- * that they face.
+/* Roots that may have exact rows in a final gather: nothing stands between such a root
+ * and the roots it faces.
  *
- * Exact rows cost much, and their mesh is that of the links, which is good where nothing
- * casts shadows: so there are exact rows only if half of the scene's area is open. Proofs
- * cost much as well, and most scenes are not open: segments show first where a root is
- * not, and the search ends once half of the area cannot be had. */
+ * Exact rows cost much, and their mesh is the links', which is good where nothing casts
+ * shadows: so there are exact rows only if half of the scene's area is open. Proofs cost
+ * much as well, and most scenes are not open: segments show first where a root is not,
+ * and the search ends once half of the area cannot be had. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <stdlib.h>
@@ -36,8 +36,8 @@ static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
 }
 
 /* Collective. Finds the open roots, proved to be so if `proof`; each rank examines some.
- * True if they have half of the scene's area. Large roots come first, those of about the
- * same area together, until that is out of reach. */
+ * True if these have half of the scene's area. Large roots come first, those of about the
+ * same area together, until half is out of reach. */
 static bool half_is_open(const struct solver *solver, struct final_gather *gather,
                          const struct root_area *sorted, bool proof, int64_t *open)
 {

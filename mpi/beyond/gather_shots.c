@@ -1,8 +1,8 @@
 /* How many shots each leaf gets: rays in all directions, and segments to lamps.
  *
- * The noise of all is least if shots go in proportion to the deviation that one of them
- * has (Neyman, 1934). Numbers of shots are the mean times powers of two, since points of
- * a sequence are spread best over these; they are within bounds, since deviations are
+ * The noise of all is least if shots go in proportion to the deviation of a single one
+ * (Neyman, 1934). Numbers of shots are the mean times powers of two, since points of a
+ * sequence are spread best over these; numbers are within bounds, since deviations are
  * guesses. */
 #include "mpi/beyond/gather_mesh.h"
 

@@ -7,13 +7,13 @@
 #include "mpi/beyond/gather_mesh.h"
 #include "mpi/beyond/stages.h"
 
-/* What covers a leaf: faces in its plane, and things that stand on it. The first four as
- * in a row. */
+/* What covers a leaf: faces in its plane, and things standing on the leaf. The first four
+ * as in a row. */
 struct cover {
-    float outside; /* share that is not inside of things, 1 */
-    float open;    /* share that is outside of narrow gaps, too, 1 */
-    float part;    /* share of `outside` that no face in its plane covers, 1 */
-    float kept;    /* share of its light that arrives on fronts, 1 */
+    float outside; /* share outside of things, 1 */
+    float open;    /* share outside of narrow gaps, too, 1 */
+    float part;    /* share of `outside` not covered by a face in its plane, 1 */
+    float kept;    /* share of its light arriving on fronts, 1 */
     double bare;   /* area times `part`, square scene units */
 };
 
@@ -36,11 +36,11 @@ struct gathering {
     struct too_near *near;  /* [near_count], once numbered */
     int64_t near_count;
     bool closed;            /* hardly any ray of any rank escapes */
-    struct rgb *spread;     /* [count] how light that is missing is spread, W/m^2 */
-    struct rgb missing;     /* part of what left last that did not arrive, 1 */
+    struct rgb *spread;     /* [count] how missing light is spread, W/m^2 */
+    struct rgb missing;     /* part of the light last leaving that did not arrive, 1 */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
-    int64_t bytes;          /* of values that ranks have exchanged so far */
+    int64_t bytes;          /* of values exchanged by ranks so far */
     struct stages *stages;  /* borrowed: who has which rows */
 };
 
@@ -52,8 +52,8 @@ static inline const struct material *gathering_material(const struct gathering *
 }
 
 /* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number:
- * [count]. Rows lie where they were made, and all ranks know all vectors: this is the
- * only exchange of a product with the rows. */
+ * [count]. Rows lie where made, and all ranks know all vectors: this is the only exchange
+ * of a product with the rows. */
 static inline void gathering_share_rows(struct gathering *g, struct rgb *values)
 {
     comm_share(g->solver->comm, g->all, g->stages->counts, g->stages->at, sizeof *g->all);
@@ -73,10 +73,10 @@ static inline void gathering_share_field(struct gathering *g, size_t offset, siz
     gathering_share_rows(g, values);
 }
 
-/* Collective. A bound on the error of B of 95 % of leaves, W/m^2, by the deviation of the
- * band that has most, and the RMS of deviations by rays and by the mesh: both go into the
- * solver's answer. `remaining`: the part of B that the solution may lack, 1. Pre:
- * g->radiosity is the solution. */
+/* Collective. A bound on the error of B of 95 % of leaves, W/m^2, by the largest
+ * deviation of a band, and the RMS of deviations by rays and by the mesh: both go into
+ * the solver's answer. `remaining`: the most that the solution may lack, in parts of B.
+ * Pre: g->radiosity is the solution. */
 void gathering_estimate_errors(struct gathering *g, double remaining);
 
 #endif

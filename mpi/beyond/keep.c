@@ -1,15 +1,15 @@
 /* Collecting and restoring a run's snapshot.
  *
  * Between passes all ranks have the same trees with the same radiosities. Not kept are
- * the quantities that every pass computes anew: fluxes, directions of conjugate residuals
- * (each pass starts them afresh), inner radiosities and ranges, and proofs that leaves
- * are open, for which rays are fired again.
+ * the quantities computed anew by every pass: fluxes, directions of conjugate residuals
+ * (started afresh by each pass), inner radiosities and ranges, and proofs of open leaves,
+ * for which rays are fired again.
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted,
  * merged on rank 0, and given their local numbers back: no copy of them is made, since a
- * checkpoint is wanted most where memory is short. (So they are sorted here: many a
- * qsort() makes a copy.) On reading, every block of links is sent to all ranks, which
- * take them in turn; homes are found once all links are there. */
+ * checkpoint is wanted most where memory is short. (So links are sorted here: many a
+ * qsort() makes a copy.) On reading, every block of links is sent to all ranks, to be
+ * taken in turn; homes are found once all links are there. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/keep.h"
 

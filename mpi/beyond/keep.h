@@ -5,8 +5,8 @@
 #include "mpi/solver.h"
 #include "rad/beyond/snapshot.h"
 
-/* Collective, between two passes. Fills `snapshot` on rank 0; on the others it stays
- * without trees. To be released with snapshot_free() on all ranks. */
+/* Collective, between two passes. Fills `snapshot` on rank 0; on the others the snapshot
+ * stays without trees. To be released with snapshot_free() on all ranks. */
 void snapshot_collect(struct solver *solver, const struct vote *vote,
                       struct snapshot *snapshot);
 
@@ -19,15 +19,15 @@ typedef void link_sink(void *context, const struct link *links, const int *owner
  * ranks are not called. The order of the links here changes. */
 void links_collect(struct solver *solver, link_sink *sink, void *context);
 
-/* Collective, on a solver that has neither links nor homes. Puts back a snapshot of
+/* Collective, on a solver with neither links nor homes. Puts back a snapshot of
  * snapshot_collect(): rank 0's, which has passed snapshot_check(). Returns the local
  * numbers of its patches, to be freed with alloc_free(). */
 int32_t *snapshot_restore(struct solver *solver, struct vote *vote,
                           struct snapshot *snapshot);
 
 /* Collective. Deals rank 0's `links`, which have patch numbers of the snapshot, to the
- * ranks in turn. `order` is the array that snapshot_restore() returned; `count` is the
- * same on all ranks. */
+ * ranks in turn. `order` is the array of snapshot_restore(); `count` is the same on all
+ * ranks. */
 void links_deal(struct solver *solver, const int32_t *order, struct link *links,
                 int64_t count);
 

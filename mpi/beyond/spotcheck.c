@@ -1,10 +1,10 @@
 /* Spot checks.
  *
- * An estimate of an error rests on assumptions, and fails where these do: that errors of
- * different leaves have nothing to do with each other, that light varies within a leaf as
- * it does from leaf to leaf, that no leaf has a part that is dark and cannot be seen. So
- * the claim of --accuracy is measured. For leaves that are drawn at random, paths
- * (rad/beyond/paths.c) estimate the reflected radiosity twice, r and s, independently:
+ * An estimate of an error rests on assumptions, and fails where these do: errors of
+ * different leaves are independent, light varies within a leaf as from leaf to leaf, no
+ * leaf has a dark part out of sight. So the claim of --accuracy is measured. For leaves
+ * drawn at random, paths (rad/beyond/paths.c) estimate the reflected radiosity twice, r
+ * and s, independently:
  *
  *     (B - r) (B - s)   has the expectation   (error of B)^2,
  *
@@ -12,15 +12,15 @@
  *
  *     E^2 = mean over draws of  A_i (B_i - r)(B_i - s) / q_i  /  sum of A B^2
  *
- * is the mean square error; how much it scatters from draw to draw tells the deviation of
- * that mean. A number of draws that is given has no bias. To end when they scatter
- * little has some where few leaves have most of the error: in trials, E^2 is a quarter
- * too small if one draw in 200 has half of it. A third of q goes by area, one by area
- * times the square of the reflected radiosity, one by area times the square of the error
- * that the gather itself has estimated: leaves that are large, bright or seem bad are
- * drawn often, and errors of the estimate are found. Draws are spread evenly over the
- * leaves in the order of forest_order(), so over the scene; BATCH at a time, each batch
- * between those before (multiples of the golden ratio).
+ * is the mean square error; its scatter from draw to draw tells the deviation of the
+ * mean. A given number of draws has no bias. To end when draws scatter little has some
+ * where few leaves have most of the error: in trials, E^2 is a quarter too small if one
+ * draw in 200 has half of it. A third of q goes by area, one by area times the square of
+ * the reflected radiosity, one by area times the square of the error estimated by the
+ * gather itself: large, bright or seemingly bad leaves are drawn often, and errors of the
+ * estimate are found. Draws are spread evenly over the leaves in the order of
+ * forest_order(), so over the scene; BATCH at a time, each batch between those before
+ * (multiples of the golden ratio).
  *
  * Paths have the answer for their guess: their mean is the truth all the same, and in
  * bright rooms, where paths are long, nearly all noise is gone. (A cube of rho .999 took
@@ -28,8 +28,7 @@
  *
  * Many leaves by few paths or few leaves by many? With n^2 the variance of r, the product
  * scatters by E^4 kappa + 2 n^2 E^2 + n^4; trials say that n^2 between E^2 and 2 E^2
- * takes fewest rays. n is measured by a few paths for each leaf of a batch that is not
- * counted.
+ * takes fewest rays. n is measured by a few paths for each leaf of a batch not counted.
  *
  * Rejected: the difference of two solutions, of which the finer is taken for the truth.
  * Both lack much of the same light, all the more where --max-level is in the way. */
@@ -50,10 +49,10 @@ enum { BATCH = 32, BATCHES_LEAST = 3, BATCHES_MOST = 128, PATHS_LEAST = 16,
 /* Rays that a check may take, besides as many as the gather took. */
 static const int64_t RAYS_FREE = 2000000;
 
-/* The most variance of one half that is good, in squares of the error. */
+/* The largest good variance of one half, in squares of the error. */
 static const double NOISE = 2.0;
 
-/* A doubt that is small enough, in parts of the square. */
+/* A doubt small enough, in parts of the square. */
 static const double DOUBT = 0.35;
 
 /* A surplus of more deviations than this is not by chance. */
@@ -67,7 +66,7 @@ struct finding {
 struct checking {
     struct solver *solver;
     struct pathtracer *pathtracer; /* borrowed */
-    int32_t *leaves;  /* [count] those that reflect, in forest_order() */
+    int32_t *leaves;  /* [count] reflecting ones, in forest_order() */
     double *upto;     /* [count] sum of the probabilities of these leaves */
     int64_t count;
     double light;     /* area times the square of the reflected radiosity of all leaves */
@@ -85,7 +84,7 @@ static struct rgb reflected(const struct forest *forest, int32_t leaf)
     return rgb_sub(forest->radiosity[leaf], forest_material(forest, leaf)->emission);
 }
 
-/* The parts of a leaf in the three sums that its probability goes by. */
+/* The parts of a leaf in the three sums behind its probability. */
 struct merit {
     double area;
     double light; /* area times the square of the reflected radiosity */
@@ -105,7 +104,7 @@ static double over(double part, double sum)
     return sum > 0.0 ? part / sum : 0.0;
 }
 
-/* Lists the leaves that can be drawn, and their probabilities. */
+/* Lists the leaves to draw from, and their probabilities. */
 static void list_leaves(struct checking *c)
 {
     const struct forest *forest = c->solver->model.forest;
@@ -194,7 +193,7 @@ static void check_batch(struct checking *c, int batch)
     }
 }
 
-/* Collective. Chooses the number of paths that is best for an error of this square. */
+/* Collective. Chooses the best number of paths for an error of this square. */
 static void choose_paths(struct checking *c, double square)
 {
     double noise = 0.0;

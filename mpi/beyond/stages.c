@@ -6,7 +6,7 @@
  * items. The others, few and light, are dealt anew. A stage takes one exchange.
  *
  * Items are done by octaves of predicted work: a heavy one at the end keeps all ranks
- * waiting. Within an octave they keep their order, for leaves of a root share proofs. */
+ * waiting. Within an octave items keep their order, for leaves of a root share proofs. */
 #include "mpi/beyond/stages.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 /* The part of the mean work expected after which a rank stops. */
 static const double PART = 0.9;
 
-/* A stage that deals no more than this number of items for each rank is the last one. */
+/* A stage dealing no more than this number of items for each rank is the last one. */
 enum { LAST = 32 };
 
 /* Items and tests of a rank in a stage; no padding. */

@@ -7,14 +7,14 @@
 
 struct stages {
     struct solver *solver;
-    const struct final_gather *gather; /* counts the work that is done */
+    const struct final_gather *gather; /* counts the work done */
     void (*act)(void *context, int64_t item);
     void *context;
     const int64_t *work; /* [count] predicted for each item, in any unit, at least 1 */
     int64_t count;
-    int *counts;       /* [ranks] items that a rank has done */
+    int *counts;       /* [ranks] items done by a rank */
     int *at;           /* [ranks] place of its first one, if those of rank 0 come first */
-    int32_t *place;    /* [count] of each item; a rank has its own as it has done them */
+    int32_t *place;    /* [count] of each item; a rank's own in the order of its work */
     int *rank_of;      /* [count] rank that does an item */
     int32_t *items;    /* [left] not done yet, heavy ones first */
     int64_t left;
@@ -22,14 +22,14 @@ struct stages {
     double ratio;      /* tests that items took for the work predicted, in a stage */
 };
 
-/* Collective. Has each item done on one rank, so that ranks have about the same work.
- * Pre: the fields up to `count` are set, the others 0. After a signal, items count as
- * done that are not. */
+/* Collective. Has each item done on one rank, with about the same work for all ranks.
+ * Pre: the fields up to `count` are set, the others 0. After a signal, items left count
+ * as done. */
 void stages_run(struct stages *stages);
 void stages_free(struct stages *stages);
 
 /* Collective. Makes the cuts of the regions of leaves, each on one rank for all. `exact`,
- * [count]: leaves that need none; NULL: all do. Pre: the gather is as renewed. */
+ * [count]: leaves needing none; NULL: all need cuts. Pre: the gather is as renewed. */
 void stages_make_cuts(struct solver *solver, struct final_gather *gather,
                       const int32_t *leaves, const bool *exact, int64_t count);
 
