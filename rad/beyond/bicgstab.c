@@ -4,8 +4,8 @@
  *     t = A s     r' = s - o t,  o = (t, s) / (t, t)     x += a p + o s
  *     p' = r' + (r0, r') / (r0, r) (a / o) (p - o v).
  *
- * A band that is solved, or where a denominator is 0, stands still; if all do so with a
- * residual left, the method begins afresh from where it is. */
+ * A solved band, or one with a denominator of 0, stands still; if all do so with a
+ * residual left, the method begins afresh from there. */
 #include "rad/beyond/bicgstab.h"
 
 #include <math.h>
@@ -48,7 +48,7 @@ static void add(struct rgb *y, const struct rgb *x, struct rgb factor, int64_t c
             y[i].band[c] += factor.band[c] * x[i].band[c];
 }
 
-/* a / b, 0 where that is not a number to go on with. */
+/* a / b, or 0 where the quotient is infinite, undefined or huge. */
 static double quotient(double a, double b)
 {
     double q = a / b;

@@ -1,5 +1,4 @@
-/* Systems of linear equations that are not symmetric, for the three bands side by
- * side. */
+/* Systems of unsymmetric linear equations, for the three bands side by side. */
 #ifndef RAD_BEYOND_BICGSTAB_H
 #define RAD_BEYOND_BICGSTAB_H
 
@@ -18,7 +17,7 @@ struct bicgstab {
 /* When to stop: at the first of these. */
 struct bicgstab_end {
     double residual; /* at most, 1 */
-    double part;     /* of the residual that there is at first, at most, 1 */
+    double part;     /* of the first residual, at most, 1 */
     int steps;
 };
 

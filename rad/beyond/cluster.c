@@ -1,18 +1,18 @@
 /* Building the tree above the roots.
  *
  * A node is cut twice in two. Each cut is across the coordinate in which its roots differ
- * most: three of place, three of direction, and size, so that groups come out that lie
- * together, look the same way, and are alike in size. The cut is at the mean.
- * Where lamps and other surfaces are mixed, it is between these: a mean over both
- * describes neither. Then it is between spaces that a few rays from each root do not
- * connect: a cluster of both would carry light through the wall between them.
+ * most: three of place, three of direction, and size, so the roots of a group lie
+ * together, look the same way, and are alike in size. The cut is at the mean. Where lamps
+ * and other surfaces are mixed, the cut is between these: a mean over both describes
+ * neither. Then it is between spaces not connected by a few rays from each root: a
+ * cluster of both would carry light through the wall in between.
  *
  * Roots are weighed by their area plus the mean area: by area alone, a large wall decides
- * where the furniture before it is cut; by number alone, the furniture decides where
- * walls are.
+ * where the furniture before the wall is cut; by number alone, the furniture decides
+ * where walls are.
  *
  * Each level costs O(k), since roots are parted and not sorted. Roots that differ in
- * nothing, and halves too large for the levels that IDs have left, are cut by number.
+ * nothing, and halves too large for the levels left in IDs, are cut by number.
  *
  * Rejected: one tree for each class of orientation (a tenth more links at the same
  * error); places alone (half more error: the other side of a thing receives other
@@ -28,19 +28,19 @@
 #include "geom/stop.h"
 #include "rad/beyond/sample.h"
 
-/* Keys that are compared by scatter: place, direction, size; and two of 0 and 1. */
+/* Keys compared by scatter: place, direction, size; and two of 0 and 1. */
 enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS };
 
-/* Scene units of place that count like a unit of direction, and of the root of area. The
- * square of the former is at most so many times the variance of place: a small thing in a
- * wide scene would be cut by direction alone, into groups that are all as wide as it. */
+/* Scene units of place worth a unit of direction, and one of the root of area. The square
+ * of the former is at most so many times the variance of place: a small thing in a wide
+ * scene would be cut by direction alone, into groups all as wide as the scene. */
 static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0, DIRECTION_MOST = 8.0;
 
 /* A root on its way into the tree. */
 struct member {
     double key[ALL_KEYS], weight;
     int32_t root;
-    int32_t space; /* roots that see each other, by way of others too, have the same */
+    int32_t space; /* the same for roots seeing each other, by way of others too */
 };
 
 struct cutter {
@@ -83,8 +83,8 @@ static int32_t part_items(struct cutter *cutter, int32_t from, int32_t to, int k
     return front - from;
 }
 
-/* The key that scatters most, and its mean. Keys are taken from the first item's, so
- * that those of like items have no rounding. */
+/* The key that scatters most, and its mean. Keys are taken from the first item's, so like
+ * items have no rounding. */
 static int widest_key(const struct member *items, int32_t count, double *mean)
 {
     int widest = 0;
@@ -114,7 +114,7 @@ static int widest_key(const struct member *items, int32_t count, double *mean)
 
 /* --- spaces --- */
 
-/* The least part of an area that is a space worth a cut. */
+/* The least part of an area to make a space worth a cut. */
 static const double SPACE_LEAST = 1.0 / 16.0;
 
 static int32_t space_of(int32_t *up, int32_t root)
@@ -126,7 +126,7 @@ static int32_t space_of(int32_t *up, int32_t root)
     return root;
 }
 
-/* Roots of a space too few to enclose it are taken to be outside. */
+/* The roots of a space are taken to be outside if too few to enclose a space. */
 static void join_small_spaces(int32_t *space, int32_t all)
 {
     enum { TETRAHEDRON = 4 };
@@ -161,9 +161,9 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
     return met;
 }
 
-/* [all roots + 1] the space of each, by one of its roots: those that a few rays find each
- * other by. A root that sees the outside, which has the last number, is in its space.
- * Without rays there is but one. */
+/* [all roots + 1] the space of each, by one of its roots: a few rays connect the roots of
+ * a space. A root seeing the outside, which has the last number, is in the outside's
+ * space. Without rays there is but one. */
 static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
 {
     int32_t all = scene_root_count(scene);
@@ -209,7 +209,7 @@ static int32_t cut(struct cutter *cutter, int32_t from, int32_t to, int64_t most
 {
     int32_t count = to - from;
     if (count < 2 ||
-        stop_is_asked()) /* then any tree will do: nobody is going to use it */
+        stop_is_asked()) /* then any tree will do: none will be used */
         return (count + 1) / 2;
     struct member *items = cutter->items + from;
     int32_t first = part_items(cutter, from, to, NO_LAMP, 1.0);
@@ -225,7 +225,7 @@ static int32_t cut(struct cutter *cutter, int32_t from, int32_t to, int64_t most
     return fits ? first : count / 2;
 }
 
-/* A root as if it were a cluster. */
+/* A root in the form of a cluster. */
 static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
 {
     struct triangle t = scene_root_triangle(scene, root);
@@ -261,7 +261,7 @@ static void add_child(struct cluster *parent, const struct cluster *child)
     parent->is_dark = (fresh || parent->is_dark) && child->is_dark;
 }
 
-/* Pre: the same is known of the clusters below it. */
+/* Pre: the same is known of the clusters below. */
 static void sum_up(struct cutter *cutter, struct cluster *cluster)
 {
     const struct cluster_tree *tree = cutter->tree;
@@ -276,7 +276,7 @@ static void sum_up(struct cutter *cutter, struct cluster *cluster)
         cluster->reflectance.band[c] /= cluster->reflecting;
 }
 
-/* Where the four parts of a cluster end. `below`: roots that a child can hold at most. */
+/* Where the four parts of a cluster end. `below`: most roots in a child. */
 static void cut_in_four(struct cutter *cutter, int32_t from, int32_t to, int64_t below,
                         int32_t ends[4])
 {

@@ -1,9 +1,9 @@
-/* The tree above the roots: the quadtrees of the patches, continued upwards until one
- * node, the top, holds the whole scene.
+/* The tree above the roots: the quadtrees of the patches, continued upwards to one node,
+ * the top, over the whole scene.
  *
- * A cluster is a node of it: up to four children, each a cluster or a root. It is a pure
- * function of the prepared scene, the same on all ranks and machines; one copy serves all
- * ranks of a node.
+ * A cluster is a node of this tree: up to four children, each a cluster or a root. The
+ * tree is a pure function of the prepared scene, the same on all ranks and machines; one
+ * copy serves all ranks of a node.
  *
  * A node is a patch or a cluster: number n >= 0 is patch n, number n < 0 is cluster ~n.
  * As an ID a cluster has CLUSTER_ROOT for its root, and its path from the top as a patch
@@ -19,7 +19,7 @@
 #include "octree/octree.h"
 #include "rad/patch.h"
 
-/* The top is cluster 0. Ask for NODE_NONE first: it is below 0, too. */
+/* The top is cluster 0. Ask for NODE_NONE first, which is below 0, too. */
 enum { NODE_TOP = -1 };
 
 /* No root has this number. */
@@ -29,9 +29,9 @@ struct cluster {
     struct vec3 low, high;               /* box around its roots, scene units */
     struct vec3 normal_low, normal_high; /* box around their unit normals */
     double area;                         /* sum over its roots, square scene units */
-    double reflecting;                   /* area that is not black */
-    struct rgb reflectance;              /* mean over that, 1: a wide black ground does
-                                            not make a house on it look black */
+    double reflecting;                   /* area of surfaces not black */
+    struct rgb reflectance;              /* mean over these, 1: a house on a wide black
+                                            ground does not look black */
     int32_t child[4];                    /* nodes; NODE_NONE where there are fewer */
     int32_t first, end; /* its roots are roots[first] to before roots[end] */
     uint32_t hierarchy;                  /* of its ID */
@@ -40,8 +40,8 @@ struct cluster {
 
 struct cluster_tree {
     struct cluster *clusters; /* [count] children after their parents */
-    int32_t *roots; /* [root_count] those that have an area, in the tree's order */
-    int32_t *place; /* [all roots] where a root is in `roots`; -1: it has no area */
+    int32_t *roots; /* [root_count] those with an area, in the tree's order */
+    int32_t *place; /* [all roots] where a root is in `roots`; -1: no area */
     double *area_before;      /* [root_count + 1] sum over the roots before a place */
     int32_t count, root_count, all_roots;
     bool is_view;             /* the arrays lie in memory of others */
@@ -56,13 +56,12 @@ enum { SPACE_RAYS = 4 };
 int32_t *places_met(const struct scene *scene, const struct octree *octree,
                     int32_t first, int32_t end);
 
-/* The tree over all roots that have an area; at least one has. Roots are parted into
- * spaces by the places that all roots meet; NULL: all are in one. O(k log k) for k
- * roots. */
+/* The tree over all roots with an area; at least one has. Roots are parted into spaces by
+ * the places met by all roots; NULL: all are in one. O(k log k) for k roots. */
 struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met);
 void cluster_tree_destroy(struct cluster_tree *tree);
 
-/* Into a block, and as it is there: read-only, valid as long as the block. */
+/* Into a block, and as found there: read-only, valid as long as the block. */
 void cluster_tree_pack(const struct cluster_tree *tree, struct pack *pack);
 struct cluster_tree *cluster_tree_view(struct pack *pack);
 

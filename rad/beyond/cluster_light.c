@@ -1,6 +1,6 @@
-/* Push-pull through the clusters, as rad/pushpull.c does it in the patches. Children
- * differ in area here, so means are weighted. Children come after their parents, so a
- * loop downwards meets them first. */
+/* Push-pull through the clusters, as rad/pushpull.c does in the patches. Children differ
+ * in area here, so means are weighted. Children come after their parents, so a loop
+ * downwards meets children first. */
 #include "rad/beyond/cluster_light.h"
 
 #include "geom/alloc.h"
@@ -57,7 +57,7 @@ void cluster_light_push(struct cluster_light *light, struct forest *forest,
     const struct cluster_tree *tree = light->tree;
     for (int32_t i = 0; i < tree->count; i++) {
         const struct cluster *cluster = &tree->clusters[i];
-        struct rgb *h = &light->irradiance[i]; /* so far that of the parent */
+        struct rgb *h = &light->irradiance[i]; /* so far the parent's */
         for (int c = 0; c < BANDS; c++) {
             double own = flux_to_watts(unit, light->flux[BANDS * i + c]) / cluster->area;
             h->band[c] = (i > 0 ? h->band[c] : 0.0) + own;

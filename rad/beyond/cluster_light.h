@@ -1,5 +1,5 @@
-/* The light of clusters: mean radiosity, flux that links bring, and the irradiance that
- * they hand down. All ranks know the radiosities of all clusters. */
+/* The light of clusters: mean radiosity, the flux brought by links, and the irradiance
+ * handed down. All ranks know the radiosities of all clusters. */
 #ifndef RAD_BEYOND_CLUSTER_LIGHT_H
 #define RAD_BEYOND_CLUSTER_LIGHT_H
 
@@ -9,7 +9,7 @@
 struct cluster_light {
     const struct cluster_tree *tree; /* borrowed */
     struct rgb *radiosity;  /* [tree->count] B, W/m^2: the mean over the area */
-    struct rgb *sent;       /* [tree->count] means of the vector that is transferred */
+    struct rgb *sent;       /* [tree->count] means of the transferred vector */
     int64_t *flux;          /* [BANDS * tree->count] Phi of the links of clusters */
     struct rgb *irradiance; /* [tree->count] H of a cluster and all above it, W/m^2 */
 };

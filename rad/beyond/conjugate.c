@@ -11,20 +11,20 @@
  *     p = r + turn p,   K p = K r + turn K p,   turn = - <K r, K p> / <K p, K p>,
  *     B += step p,      r -= step K p,          step = <r, K p> / <K p, K p>.
  *
- * K r is told by the next iteration if that is of B + r: G(B + r) - (B + r) = r - K r. So
- * ranks exchange the light and nothing else, as in the paper's method. Sums run over all
- * leaves in one order, the same on all ranks. Bands are three systems side by side;
- * surfaces that reflect nothing have no residual.
+ * The next iteration, if of B + r, tells K r: G(B + r) - (B + r) = r - K r. So ranks
+ * exchange nothing but the light, as in the paper's method. Sums run over all leaves in
+ * one order, the same on all ranks. Bands are three systems side by side; surfaces
+ * reflecting nothing have no residual.
  *
  * The error e of B solves K e = r, so it is r + rho d F r + (rho d F)^2 r + ... Let |x|
  * be the sum of w |x| over leaves and bands. A F being symmetric, |rho d F x| is at most
  * q |x|, with q the largest row sum times rho d. Caps keep q below 1. So |e| is at most
- * |r| / (1 - q), that of G(B) q times as much, and the light that it lacks at most the
- * largest rho d times that.
+ * |r| / (1 - q), the error of G(B) q times as much, and the light missing there at most
+ * the largest rho d times that.
  *
  * Jacobi's method, the paper's, gains a factor rho per iteration; this one needs some ten
  * iterations for any rho. Rejected: conjugate gradients of each rank's own leaves, with
- * sums over ranks. They have to be of integers, in units from bounds on all factors. */
+ * sums over ranks. These have to be of integers, in units from bounds on all factors. */
 #include "rad/beyond/conjugate.h"
 
 #include <math.h>
@@ -43,10 +43,10 @@ void conjugate_free(struct conjugate *cg)
     *cg = (struct conjugate){0};
 }
 
-/* Row sum times reflectance is the factor that light grows by from bounce to bounce. It
- * is kept at or below this, or half way from rho to 1 where that is more. A lower limit
- * took light from leaves close to lamps, which have links of many levels; at 0.95 the
- * errors are those without caps. */
+/* Row sum times reflectance is the factor of light's growth from bounce to bounce, kept
+ * at or below this, or half way from rho to 1 where that is more. A lower limit took
+ * light from leaves close to lamps, which have links of many levels; at 0.95 the errors
+ * are those without caps. */
 static const double MOST_REFLECTED = 0.95;
 
 static double cap_of(double reflectance, double row)
@@ -55,7 +55,7 @@ static double cap_of(double reflectance, double row)
     return reflectance * row > most ? most / (reflectance * row) : 1.0;
 }
 
-/* Chooses the cap of a leaf, and lists it if it reflects. */
+/* Chooses the cap of a leaf, and lists a reflecting leaf. */
 static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
                      double row)
 {
@@ -102,7 +102,7 @@ void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct r
     }
 }
 
-/* The residual of B + r, the light that the iteration was of. */
+/* The residual of B + r, the light of the iteration. */
 static double change(const struct conjugate *cg, const struct forest *forest, int64_t i,
                      int c)
 {
@@ -119,8 +119,8 @@ double conjugate_missing(const struct conjugate *cg, const struct forest *forest
     return cg->share * cg->growth / (1.0 - cg->growth) * sum;
 }
 
-/* <x, K p> / <K p, K p>, where x is r, or K r if `image`; 0 if K p is 0, as of a system
- * that is solved. */
+/* <x, K p> / <K p, K p>, where x is r, or K r if `image`; 0 if K p is 0, as of a solved
+ * system. */
 static double quotient(const struct conjugate *cg, const struct forest *forest, int c,
                        bool image)
 {

@@ -1,10 +1,10 @@
-/* Conjugate residuals: fewer of the paper's iterations to the same light; and caps, so
- * that there always is a light to come to.
+/* Conjugate residuals: fewer of the paper's iterations to the same light; and caps, for a
+ * finite light in any scene.
  *
  * The row sum of a leaf (rad/pushpull.h) is at most 1 in truth; where links of different
- * levels meet it may be larger. A leaf with a row sum so large that light would grow, or
- * all but grow, from bounce to bounce has its irradiance multiplied by a factor below 1,
- * its cap.
+ * levels meet, larger sums occur. A leaf with a row sum so large that light would grow,
+ * or all but grow, from bounce to bounce has its irradiance multiplied by a factor below
+ * 1, its cap.
  *
  * Local: all ranks know the light of all leaves, and change it alike. */
 #ifndef RAD_BEYOND_CONJUGATE_H
@@ -16,7 +16,7 @@
 #include "rad/patch.h"
 
 struct conjugate {
-    int32_t *leaves;       /* [count] those that reflect, as in forest_order() */
+    int32_t *leaves;       /* [count] reflecting ones, as in forest_order() */
     struct rgb *weight;    /* w, square scene units; [count], like the others leaf by
                               leaf */
     struct rgb *radiosity; /* B, W/m^2 */
@@ -35,11 +35,11 @@ void conjugate_free(struct conjugate *cg);
  * iteration is of. `rows`: [forest->count] in the first band the row sum of each leaf. */
 void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows);
 
-/* A bound on the light that the radiosities lack after an iteration, W in square scene
+/* A bound on the light missing in the radiosities after an iteration, W in square scene
  * units. */
 double conjugate_missing(const struct conjugate *cg, const struct forest *forest);
 
-/* After an iteration: sets all radiosities to those that the next one is to be of. */
+/* After an iteration: sets all radiosities for the next one. */
 void conjugate_step(struct conjugate *cg, struct forest *forest);
 
 #endif

@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-/* The part that counts of the light of a closed scene if it were spread evenly: in
- * ordinary rooms less than the emitted light, in white ones many times as much. */
+/* The part counted of the light of a closed scene, spread evenly: in ordinary rooms less
+ * than the emitted light, in white ones many times as much. */
 static const double LASTING = 0.1;
 
 /* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of

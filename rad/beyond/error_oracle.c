@@ -5,17 +5,17 @@
  *     rho_p B_q dG_p       the form factor varies over p: splitting p mends it,
  *     rho_p G dB_q         the radiosity varies over q: splitting q mends it,
  *
- * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are
- * in it) and dB_q the range of radiosity over the leaves of q; likewise from p to q. The
- * link itself tells the four children of p apart (patch_link.h). So the spread over p is
- * first of all a reason to give p children, which costs no ray; then the spread within
- * each child is left, about half as large, and the range within each child of q. A
- * sampled link may have missed a shadow or a gap: a part of the unoccluded G is in doubt,
- * less if all segments agree, nothing if the way is proved to be open. (Then it is still
- * in doubt if the patches are near: points on a lamp do not show how much light the
- * ceiling close above it receives.) All these are powers; their sum is compared with the
- * threshold, and the side that causes more of it is split. A link with a cluster in it is
- * judged alike, but for the part in doubt. */
+ * with dG_p the spread of G over the sub-areas of p (shadows with an edge on p included)
+ * and dB_q the range of radiosity over the leaves of q; likewise from p to q. The link
+ * itself tells the four children of p apart (patch_link.h). So the spread over p is first
+ * of all a reason to give p children, which costs no ray; then the spread within each
+ * child is left, about half as large, and the range within each child of q. A sampled
+ * link may have missed a shadow or a gap: a part of the unoccluded G is in doubt, less if
+ * all segments agree, nothing if the way is proved to be open. (Of near patches G stays
+ * in doubt even then: points on a lamp do not show how much light the ceiling close above
+ * it receives.) All these are powers; their sum is compared with the threshold, and the
+ * side causing more error is split. A link with a cluster is judged alike, but for the
+ * part in doubt. */
 #include "rad/beyond/error_oracle.h"
 
 #include <math.h>
@@ -58,8 +58,8 @@ static double share_of(const struct model *model, int32_t node, int k)
 }
 
 /* The spread of G over the children of a node, as an exchange area: the largest less the
- * smallest of those that are like it, or, with a cluster in the link, twice the sum of
- * the parts' deviations from shares by area: 2 G for all in one half. */
+ * smallest G if all children were like one, or, with a cluster in the link, twice the sum
+ * of the parts' deviations from shares by area: 2 G for all in one half. */
 static double spread_of(const struct model *model, const struct link *link, int32_t node,
                         const uint8_t parts[3])
 {
@@ -73,13 +73,13 @@ static double spread_of(const struct model *model, const struct link *link, int3
     return link_area(link) * (link_has_cluster(link) ? 2.0 * off : 4.0 * (most - least));
 }
 
-/* Part of the spread over a node that is left within its children: of a cluster they are
- * no quarters of a plane, over which light varies smoothly. */
+/* Part of the spread over a node left within its children: a cluster's are no quarters of
+ * a plane, over which light varies smoothly. */
 static const double LEFT_OF_PATCHES = 0.5, LEFT_OF_CLUSTERS = 2.0;
 
-/* The error that one side causes: the spread of the light that it receives within its
- * children, and the range of the light that it sends. (A range of clusters, from the
- * deviations of the B of their roots, changed no error, and the links by 1 %.) */
+/* The error caused by one side: the spread of received light within its children, and the
+ * range of sent light. (A range of clusters, from the deviations of the B of their roots,
+ * changed no error, and the links by 1 %.) */
 static double error_of(const struct model *model, const struct link *link, int32_t own,
                        int32_t other, const uint8_t parts[3])
 {
@@ -93,8 +93,8 @@ static double error_of(const struct model *model, const struct link *link, int32
 
 /* --- doubt --- */
 
-/* Part of the exchange of two patches that is in doubt unless it is open and they are
- * far apart. The errors that come of half or twice of it at the same number of links
+/* Part of the exchange of two patches in doubt unless the way is open and the patches are
+ * far apart. With half or twice of this part the errors at the same number of links
  * differ by less than a tenth (Cornell box). */
 static const double DOUBT = 0.125;
 
@@ -104,16 +104,16 @@ static double doubt_of_patches(const struct link *link)
     return link->seen == LINK_OPEN ? 0.0 : DOUBT * link_unoccluded(link);
 }
 
-/* Part of the bound on G that is in doubt of near ends, one of them a cluster, whatever a
- * look would find: it may be all in a few pairs of roots; and of far ends, should a look
- * find nothing at all: without it, errors would end at a floor. */
+/* Part of the bound on G in doubt of near ends, one of them a cluster, whatever a look
+ * would find: all of G may be in a few pairs of roots; and of far ends, should a look
+ * find nothing at all: without this part, errors would end at a floor. */
 static const double DOUBT_NEAR = 0.6, DOUBT_MISSED = 1.0 / 16.0;
 
-/* G in doubt of a link with a cluster in it: all that the first look found without
- * blockers. By the G that counts, links that happen to lack light would stay, and those
- * with too much be split. It is in the place of the blocker, which such a link has none
- * of. (With a quarter and an eighth, as for patches, a room of 18,512 triangles has 5 %
- * fewer links and 15 % more error.) */
+/* G in doubt of a link with a cluster: all found without blockers by the first look. By
+ * the link's own G, links happening to lack light would stay, and those with too much be
+ * split. The G of the first look is kept in place of a blocker, which such a link lacks.
+ * (With a quarter and an eighth, as for patches, a room of 18,512 triangles has 5 % fewer
+ * links and 15 % more error.) */
 static double doubt_of_clusters(const struct link *link, const struct meeting *m)
 {
     float judged;
@@ -124,11 +124,11 @@ static double doubt_of_clusters(const struct link *link, const struct meeting *m
 
 /* --- sides --- */
 
-/* A patch that only reflects is split before a cluster if it is four times as wide: its
- * parts would have to be linked with each part of the cluster afterwards. (Office3 at
- * epsilon 1e-4: 30 % fewer links than by width alone and an eighth less error, Cornell
- * box at 1e-3 a fifth fewer. With lamps put off, too, things of 2 cm beside them are lost
- * in their clusters: a room of 18,512 triangles has half more error.) */
+/* A patch that only reflects is split before a cluster if four times as wide: its parts
+ * would have to be linked with each part of the cluster afterwards. (Office3 at epsilon
+ * 1e-4: 30 % fewer links than by width alone and an eighth less error, Cornell box at
+ * 1e-3 a fifth fewer. With lamps put off, too, things of 2 cm beside a lamp are lost in
+ * their clusters: a room of 18,512 triangles has half more error.) */
 static const double PUT_OFF = 0.25;
 
 static double width_of(const struct end *end)
@@ -136,7 +136,7 @@ static double width_of(const struct end *end)
     return end->cluster || end->emits ? end->radius : PUT_OFF * end->radius;
 }
 
-/* The wider one; of equal ones that with the lower ID. */
+/* The wider one; of equal ones the one with the lower ID. */
 static bool p_is_wider(const struct meeting *m)
 {
     double width_p = width_of(m->p), width_q = width_of(m->q);
@@ -145,8 +145,8 @@ static bool p_is_wider(const struct meeting *m)
     return id_compare(m->p->id, m->q->id) <= 0;
 }
 
-/* The side that causes more of the error, or the larger one if it causes all that is in
- * doubt, W. If that is a patch that may not be split, the other, where it helps. */
+/* The side causing more of the error, `doubt`, W, counted to the larger side. If this is
+ * a patch that may not be split, the other, where a split there helps. */
 static int32_t choose(const struct model *model, const struct link *link, double doubt,
                       bool p_larger)
 {
@@ -194,7 +194,7 @@ int32_t error_oracle_side_by_energy(const struct model *model, const struct link
 
 /* --- dividing --- */
 
-/* Divides the node `to`, which receives, if it is a patch. */
+/* Divides the receiver `to` if it is a patch. */
 static void divide(struct model *model, const struct link *link, int32_t to, int32_t from,
                    const uint8_t parts[3])
 {

@@ -4,14 +4,14 @@
 
 #include "rad/link.h"
 
-/* As side_to_split of struct method: the side that causes more of the error. */
+/* As side_to_split of struct method: the side causing more of the error. */
 int32_t error_oracle_side_to_split(const struct model *model, const struct link *link);
 
-/* The same of a link with a cluster in it; one of two patches is split by its energy. */
+/* The same of a link with a cluster; one of two patches is split by its energy. */
 int32_t error_oracle_side_by_energy(const struct model *model, const struct link *link);
 
-/* Gives patches of a link that is not split children, where the link varies over them
- * more than the criterion allows: it deals its light to them. */
+/* Gives patches of an unsplit link children, to deal its light to, where the link varies
+ * over a patch more than the criterion allows. */
 void error_oracle_divide(struct model *model, const struct link *link);
 
 #endif

@@ -2,9 +2,9 @@
  *
  * Whether two ends can face each other is told from boxes around their points and around
  * their normals: for a root with normal n and a point x of the other end, n . (x - y) > 0
- * for some point y of the root; the largest value that can have, with n, x and y anywhere
- * in their boxes, is found axis by axis. Of a patch the plane is known, and of two
- * patches all corners. */
+ * for some point y of the root; the largest value of this product, with n, x and y
+ * anywhere in their boxes, is found axis by axis. Of a patch the plane is known, and of
+ * two patches all corners. */
 #include "rad/beyond/node.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Nodes as ends of links, patches and clusters alike, and the bounds that two of them
- * have before they are looked at. */
+/* Nodes as ends of links, patches and clusters alike, and the bounds on two of them
+ * before a look. */
 #ifndef RAD_BEYOND_NODE_H
 #define RAD_BEYOND_NODE_H
 
@@ -21,7 +21,7 @@ struct end {
 
 struct end end_of(const struct model *model, int32_t node);
 
-/* Child k of a node that has children, or NODE_NONE. */
+/* Child k of a node with children, or NODE_NONE. */
 static inline int32_t node_child(const struct model *model, int32_t node, int k)
 {
     return node_is_cluster(node) ? model->clusters->tree->clusters[~node].child[k]
@@ -31,15 +31,15 @@ static inline int32_t node_child(const struct model *model, int32_t node, int k)
 /* The area of child k, 0 where there is none. */
 double end_child_area(const struct model *model, const struct end *end, int k);
 
-/* False if it is certain that nothing of one end faces anything of the other. */
+/* False if certainly nothing of one end faces anything of the other. */
 bool ends_may_face(const struct end *a, const struct end *b);
 
-/* True if it is proved that nothing of one end sees anything of the other: one wall hides
+/* Proves that nothing of one end sees anything of the other: true if one wall hides
  * all. */
 bool ends_are_walled_off(const struct end *a, const struct end *b,
                          const struct octree *octree, struct octree_counts *counts);
 
-/* Power that a receiver reflects of a sender's light, W per square scene unit of G. */
+/* Power reflected by a receiver of a sender's light, W per square scene unit of G. */
 static inline double light_to(const struct end *to, const struct end *from)
 {
     return rgb_dot(to->reflectance, from->radiosity);

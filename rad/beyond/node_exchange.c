@@ -7,17 +7,17 @@
  *    segment; of a patch there is a point in each quarter;
  *
  *  - with itself, or with a node that is near and not larger: by 16 cosine-distributed
- *    rays from the smaller one. A ray that ends on a root of the other, which its place
- *    in the tree's order tells, counts A / 16: no 1 / r^2, no clamp, and visibility is in
- *    it. (By pairs of points, books in a shelf lose a quarter of their light: they miss
- *    the pairs that matter.)
+ *    rays from the smaller one. A ray ending on a root of the other, told by its place in
+ *    the tree's order, counts A / 16: no 1 / r^2, no clamp, visibility included. (By
+ *    pairs of points, books in a shelf lose a quarter of their light: points miss the
+ *    pairs that matter.)
  *
  * Rejected: exact factors from points to the quarters of a patch (no less error, 8 % more
  * time); four pairs of points of the 16 where a link can carry little (a fifth fewer
  * rays, and up to 6 % more links).
  *
- * The points are chosen by a hash of both IDs, so that the errors of different links are
- * not alike and a link means the same on any rank. */
+ * The points are chosen by a hash of both IDs: the errors of different links are not
+ * alike, and a link means the same on any rank. */
 #include "rad/beyond/node_exchange.h"
 
 #include "geom/hash.h"

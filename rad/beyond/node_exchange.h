@@ -4,12 +4,12 @@
 
 #include "rad/beyond/node.h"
 
-/* An estimate. G of a cluster with itself is that of both directions. */
+/* An estimate. G of a cluster with itself is of both directions. */
 struct node_exchange {
     double g_p[4];     /* G of each child of p, visibility included; sum: area */
     double g_q[4];     /* the same of q */
     double unoccluded; /* G without blockers, at most the smaller area */
-    double area;       /* G with them */
+    double area;       /* G with blockers */
 };
 
 /* True if the two are sampled by rays and not by points. */

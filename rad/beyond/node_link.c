@@ -2,8 +2,8 @@
  *
  * Stopping bias (Kirk and Arvo 1991): a link whose few samples happen to miss its light
  * looks good, is accepted, and stays too dark: 2.4 % of all light in a room of 18,000
- * triangles. So a link that is accepted is estimated afresh, from points that had no say
- * in that; and it keeps the G of its first look for the passes to come.
+ * triangles. So an accepted link is estimated afresh, from points without a say in the
+ * decision, and keeps the G of its first look for the passes to come.
  *
  * A link that sees nothing stays, at the cost of 24 bytes, unless one wall is proved to
  * hide all: that no sample arrives is no proof. */
@@ -17,15 +17,15 @@
 
 /* --- looks --- */
 
-/* G without blockers, as the first look found it: see doubt_of_clusters(). */
+/* G without blockers, found by the first look: see doubt_of_clusters(). */
 static void set_judged(struct link *link, double unoccluded)
 {
     float area = (float)unoccluded;
     memcpy(&link->blocker, &area, sizeof area);
 }
 
-/* Finds the parts of children that exchange `area` in the proportions of `g`, none more
- * than its own area. Returns the exchange area that this leaves. */
+/* Finds the parts of children to exchange `area` in the proportions of `g`, none more
+ * than its own area. Returns the exchange area left. */
 static double find_parts(const struct model *model, const struct end *end,
                          const double g[4], double area, uint8_t parts[3])
 {
@@ -71,8 +71,8 @@ struct link node_link_top(void)
     return (struct link){.p = NODE_TOP, .q = NODE_TOP, .cost = compact8(1.0)};
 }
 
-/* The link of two patches, that of the lower ID first: which one's points are taken must
- * not depend on the way to it through the clusters. */
+/* The link of two patches, the lower ID first: the choice of points must not depend on
+ * the way here through the clusters. */
 static bool make_of_patches(struct model *model, const struct end *p,
                             const struct end *q, struct link *link)
 {
@@ -150,13 +150,13 @@ void node_link_keep(struct model *model, struct link *link, bool is_new)
 
 /* --- transfer ---
  *
- * Light that a link brings to a node with children is dealt to them by the link's parts,
- * and the light that they send is weighted by them: that costs no ray, since the parts
- * come from the very looks that gave G. Where the parts of a patch are even it is the
+ * Light brought by a link to a node with children is dealt to the children by the link's
+ * parts, and light sent by the children is weighted by the parts. This costs no ray,
+ * since the parts come from the looks for G. With even parts of a patch the result is the
  * same as light to the patch itself. */
 
-/* True if light to and from a node is that of its children, by the parts, and not of the
- * node itself: of a cluster, and of a patch with children unless the parts are even. */
+/* True if light to and from a node is its children's, by the parts, and not the node's
+ * own: of a cluster, and of a patch with children unless the parts are even. */
 static bool is_divided(const struct model *model, int32_t node, const uint8_t parts[3])
 {
     return node_is_cluster(node) ||
@@ -190,7 +190,7 @@ static inline struct shares shares_of(const struct model *model, int32_t node,
     return shares;
 }
 
-/* The light that a link takes from those that share it, of a vector [patches]. */
+/* The light taken by a link from those sharing it, of a vector [patches]. */
 static inline struct rgb take(const struct model *model, const struct shares *shares,
                               const struct rgb *vector)
 {
@@ -203,7 +203,7 @@ static inline struct rgb take(const struct model *model, const struct shares *sh
     return sum;
 }
 
-/* Adds light, G B, to the flux of those that share it. */
+/* Adds light, G B, to the flux of those sharing the light. */
 static inline void give(const struct model *model, const struct shares *shares,
                         double area, const struct rgb *radiosity, struct flux_unit unit)
 {

@@ -1,6 +1,6 @@
 /* Links between any two nodes of the tree: patches, clusters, or one of each; and of a
- * cluster with itself, for the light that its own parts exchange. Links of two patches
- * are left to rad/beyond/patch_link.h.
+ * cluster with itself, for the light exchanged by its own parts. Links of two patches are
+ * left to rad/beyond/patch_link.h.
  *
  * A link of a cluster with itself has half of its G, since transfer takes it both
  * ways. */
@@ -19,9 +19,9 @@ struct link node_link_top(void);
 int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link *children);
 
-/* Gives the patches of the link children, where it varies over them more than the
- * criterion allows. G of clusters, of a new link, is estimated again, at other points,
- * so that it is not biased by the decision that has accepted it. */
+/* Gives the patches of the link children, where the link varies over a patch more than
+ * the criterion allows. G of clusters, of a new link, is estimated again, at other
+ * points, without the bias of the decision to accept the link. */
 void node_link_keep(struct model *model, struct link *link, bool is_new);
 
 /* As links_transfer(); of clusters goes model->clusters->sent. */

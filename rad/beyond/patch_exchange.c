@@ -4,8 +4,8 @@
  * exchange area without blockers is exact, from points of one patch to the whole of the
  * other: disks overlap where patches are close.
  *
- * No free segment does not mean that nothing passes. That is only taken so with a proof:
- * a wall that stops every segment (geom/wall.c). */
+ * No free segment does not mean that nothing passes. Only a proof shows this: a wall that
+ * stops every segment (geom/wall.c). */
 #include "rad/beyond/patch_exchange.h"
 
 #include <math.h>
@@ -20,9 +20,9 @@ bool facets_face(const struct facet *p, const struct facet *q)
            triangle_reach(&p->triangle, &q->plane) > GEOM_ROUNDING;
 }
 
-/* A guess for patches that the other's plane cuts, by a disk with the heights of the
- * highest corners in place of those of the centroids: rather too much. The centroids may
- * all lie below the horizon while the corners do not: such a pair stays in play. */
+/* A guess for patches cut by the other's plane, by a disk with the heights of the highest
+ * corners in place of those of the centroids: rather too much. The centroids may all lie
+ * below the horizon while the corners do not: such a pair stays in play. */
 static double exchange_across_horizon(const struct facet *p, const struct facet *q)
 {
     struct vec3 d = vec3_sub(triangle_centroid(&q->triangle),
@@ -34,7 +34,7 @@ static double exchange_across_horizon(const struct facet *p, const struct facet 
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-/* The segments that arrive, as bits. */
+/* The arriving segments, as bits. */
 static unsigned pair_look(const struct facet_pair *pair, const struct octree *octree,
                           struct visibility *visibility, struct octree_counts *counts)
 {
@@ -44,8 +44,8 @@ static unsigned pair_look(const struct facet_pair *pair, const struct octree *oc
     return facing & ~octree_block(octree, &pair->bundle, &visibility->blocker, counts);
 }
 
-/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that
- * are seen. */
+/* Sums of the kernels of one sub-area of p (`of_p`) or q: all facing ones, and the
+ * visible ones. */
 static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of_p,
                         int sub, double *all, double *seen)
 {
@@ -58,13 +58,13 @@ static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of
 }
 
 /* Exchange areas of the four sub-areas of a side with the whole of the other: not
- * occluded, and as far as it is seen. */
+ * occluded, and as far as visible. */
 struct side {
     double unoccluded[SUBAREAS], area[SUBAREAS];
 };
 
-/* The mean form factor from a sub-area to the other patch, by three points: exact where
- * it varies with the square of the place (Stroud's formula of degree 2). */
+/* The mean form factor from a sub-area to the other patch, by three points: exact for
+ * factors varying with the square of the place (Stroud's formula of degree 2). */
 static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
 {
     struct triangle area = triangle_child(&own->triangle, sub);
@@ -77,8 +77,8 @@ static double factor_close_by(const struct facet *own, int sub, const struct fac
     return sum / 3.0;
 }
 
-/* The visible share of a sub-area is that of its segments' kernels; where none of them
- * faces, that of the whole pair. */
+/* The visible share of a sub-area is its segments' kernels'; where none faces, the whole
+ * pair's. */
 static struct side side_of(const struct facet_pair *pair, unsigned visible, bool of_p,
                            bool apart)
 {
@@ -108,8 +108,7 @@ static double sum_of(const double values[SUBAREAS])
     return (values[0] + values[1]) + (values[2] + values[3]);
 }
 
-/* The parts that the four sub-areas have in the whole: a quarter each if there is
- * nothing. */
+/* The parts of the four sub-areas in the whole: a quarter each if there is nothing. */
 static void set_parts(const struct side *side, double parts[SUBAREAS])
 {
     double sum = sum_of(side->area);

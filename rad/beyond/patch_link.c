@@ -1,10 +1,9 @@
 /* Links of two patches, phr's.
  *
- * A child inherits its parent's visibility: the proof that it is open, if there is one,
- * and the last blocker, which is tested first. (A quarter of its segments, those
- * that begin or end at its centroid, were already fired for its parent; their answers
- * would take two bytes a link, and a bundle of 12 goes down the octree as one of 16
- * does.) */
+ * A child inherits its parent's visibility: the proof of an open way, if there is one,
+ * and the last blocker, which is tested first. (A quarter of its segments, those with an
+ * end at its centroid, were already fired for its parent; their answers would take two
+ * bytes a link, and a bundle of 12 goes down the octree as one of 16 does.) */
 #include "rad/beyond/patch_link.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Links of two patches that tell children apart, and keep proofs of visibility.
+/* Links of two patches, telling children apart and keeping proofs of visibility.
  *
  * `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
  * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a
@@ -31,15 +31,14 @@ static inline double link_part(const uint8_t parts[3], int k)
                  : (256 - parts[0] - parts[1] - parts[2]) * (1.0 / 256.0);
 }
 
-/* Parts in 256ths, rounded from the first to the last so that none is off by more than
- * one. */
+/* Parts in 256ths, rounded from the first to the last, none off by more than one. */
 void link_set_parts(uint8_t parts[3], const double exact[4]);
 
-/* The share of the light that arrives, 0..1, in the form of the field `seen`. */
+/* The share of arriving light, 0..1, in the form of the field `seen`. */
 uint8_t link_seen(double share);
 
 /* Entries of struct method: make_link, with form factors from points, and split_link,
- * which ends links of two patches that are proved to be walled off. */
+ * which ends links of two patches proved to be walled off. */
 bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
                      int32_t q, const struct facet *facet_q, const struct link *parent,
                      struct link *link);

@@ -10,34 +10,34 @@
  * factor. It goes on with the probability of y's largest reflectance. A miss or a back
  * ends it; a back with a twin is the front of the twin.
  *
- * A guess S(y) at the reflected radiosity takes noise from that chance: with the
+ * A guess S(y) at the reflected radiosity takes noise from this chance: with the
  * probability q of going on,
  *
  *     rho H  =  S  +  (rho H - S) / q  with the probability q, else S,
  *
  * in the mean, whatever S is. Where S is right, a path of a bright room brings nearly the
- * same light however long it is; else as much as its length, which varies as it does.
+ * same light however long it is; else light in proportion to its length.
  *
  * Emission is found in two ways, by a point chosen on the lights (by power, evenly over
  * the area of one: a density L(y) of its emission, all bands, over all power) with a
- * shadow segment, and by the paths that meet a light. Each light path is counted with the
- * share of the way that found it, L / (L + G) and G / (L + G) (the balance heuristic of
+ * shadow segment, and by the paths meeting a light. Each light path is counted with the
+ * share of the way of its finding, L / (L + G) and G / (L + G) (the balance heuristic of
  * Veach and Guibas, SIGGRAPH 1995), so the shares add up to 1 and nothing is counted
  * twice. Rejected: the lights alone. G has no bound where a light touches a surface, nor
  * has the variance there; here both terms are at most the light's own E.
  *
  * A light path goes the other way: from a point of the lights, chosen as above, in a
  * direction whose density is the cosine over pi, from surface to surface with the same
- * chances of going on. It brings light to all the surfaces of a scene at once, which is
- * the cheaper way to the means of many elements; a point it never meets.
+ * chances of going on. Light paths reach all the surfaces of a scene at once, which is
+ * the cheaper way to the means of many elements; no light path meets a given point.
  *
  * The first seven numbers of a path (its start, or its place in a pixel, its first light
- * point, its first direction) are those of a lattice that is moved by a random vector:
- * sample i has shift + i * step, modulo 1, in each dimension. Each sample alone is
- * uniform, so the mean is exact whatever the lattice; spread evenly, they take away most
- * of the noise. The step is that of Roberts: powers of 1 / g with g^8 = g + 1. The rest
- * of the path is plain random numbers, and so are light paths: a lattice would correlate
- * the errors of all elements. */
+ * point, its first direction) are those of a lattice moved by a random vector: sample i
+ * has shift + i * step, modulo 1, in each dimension. Each sample alone is uniform, so the
+ * mean is exact whatever the lattice; spread evenly, samples take away most of the noise.
+ * The step is by Roberts: powers of 1 / g with g^8 = g + 1. The rest of the path is plain
+ * random numbers, and so are light paths: a lattice would correlate the errors of all
+ * elements. */
 #include "rad/beyond/paths.h"
 
 #include "geom/alloc.h"
@@ -57,7 +57,7 @@ struct draw {
     uint64_t next; /* seed of the next plain number */
     double shift[DIMENSIONS];
     int sample; /* number of the path */
-    int used;   /* numbers that the path has taken */
+    int used;   /* numbers taken by the path */
 };
 
 /* Neighbouring seeds must not give related numbers. */
@@ -122,8 +122,8 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
     return q->root >= 0;
 }
 
-/* A lamp in the plane of its ceiling and before it in the file has another face over it,
- * which is met in its place; segments look through that. */
+/* A lamp in the plane of its ceiling, and earlier in the file, has another face on top,
+ * which rays meet in its place; segments look through this face. */
 static void find_hidden(struct pathtracer *pathtracer)
 {
     const struct scene *scene = pathtracer->scene;
@@ -169,7 +169,7 @@ double pathtracer_power(const struct pathtracer *pathtracer)
     return pathtracer->power[scene_root_count(pathtracer->scene) - 1];
 }
 
-/* A root, chosen by the power that it emits. */
+/* A root, chosen by its emitted power. */
 static int32_t choose_light(const struct pathtracer *pathtracer, struct draw *draw)
 {
     return (int32_t)sum_place(pathtracer->power, scene_root_count(pathtracer->scene),
@@ -218,7 +218,7 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct a
         add_light(sum, throughput, g / both, emission);
 }
 
-/* Irradiance from the light that a path has met. */
+/* Irradiance from the light met by a path. */
 static void add_met_light(const struct pathtracer *pathtracer, const struct arrival *p,
                           const struct arrival *q, struct rgb throughput, struct rgb *sum)
 {
@@ -233,8 +233,8 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct arri
 
 /* --- paths --- */
 
-/* Finds where a ray arrives that leaves a surface, in a direction whose density is its
- * cosine to the normal over pi. False for a miss or a black back. */
+/* Finds where a ray from a surface arrives, in a direction whose density is its cosine to
+ * the normal over pi. False for a miss or a black back. */
 static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
                    struct draw *draw, struct arrival *q)
 {
@@ -264,7 +264,7 @@ static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct dr
     return true;
 }
 
-/* The guess at the radiosity that is reflected where a path arrives. */
+/* The guess at the reflected radiosity where a path arrives. */
 static struct rgb guess_at(const struct forest *forest, const struct arrival *q)
 {
     struct triangle t = scene_root_triangle(forest->scene, q->root);

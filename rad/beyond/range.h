@@ -4,8 +4,8 @@
 
 #include "rad/patch.h"
 
-/* Raises the range of each patch, [forest->count], to `scale` times that in a band, or
- * that of the sum over bands if `band` is BANDS. */
+/* Raises the range of each patch, [forest->count], to `scale` times the range in a band,
+ * or of the sum over bands if `band` is BANDS. */
 void forest_raise_ranges(const struct forest *forest, int band, double scale,
                          float *ranges);
 

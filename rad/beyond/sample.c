@@ -1,6 +1,6 @@
 /* Samples: two numbers give a point of the parallelogram of two edges, of which one half
- * is folded onto the other; the direction around the normal is that of a point in a
- * square, the first of some that is in the disk, too. */
+ * is folded onto the other; the direction around the normal is a point's in a square, the
+ * first of some to lie in the disk, too. */
 #include "rad/beyond/sample.h"
 
 #include "geom/hash.h"
@@ -30,7 +30,7 @@ struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
 }
 
 /* The direction with this square of the sine to the triangle's unit normal, turned about
- * that by an angle from the seed. */
+ * the normal by an angle from the seed. */
 static struct vec3 direction_above(const struct triangle *t, struct vec3 normal,
                                    double sine2, uint64_t seed)
 {

@@ -1,4 +1,4 @@
-/* Points on triangles and rays from them, evenly distributed over seeds. */
+/* Points on triangles, and rays from there, evenly distributed over seeds. */
 #ifndef RAD_BEYOND_SAMPLE_H
 #define RAD_BEYOND_SAMPLE_H
 
@@ -7,7 +7,7 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 
-/* A ray: one that begins at a surface begins just above it. */
+/* A ray: one from a surface begins just above. */
 struct half_line {
     struct vec3 origin, direction; /* of length 1 */
 };
@@ -31,7 +31,7 @@ static inline struct vec3 point_above(struct vec3 point, struct vec3 normal)
 struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
                             int ring, int rings);
 
-/* The root whose front the ray meets first; -1 if it meets a back, `outside` if none. */
+/* The root whose front the ray meets first; -1 for a back, `outside` for none. */
 int32_t root_met(const struct scene *scene, const struct octree *octree,
                  const struct half_line *ray, int32_t outside,
                  struct octree_counts *counts);

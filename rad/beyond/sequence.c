@@ -3,13 +3,13 @@
  * Sobol's points are built bit by bit, all four coordinates at once. Owen's scrambling
  * permutes the halves of the unit interval, the halves of each half and so on, each time
  * by a coin that depends on all bits before; a multiplication carries upwards only, so on
- * reversed bits it does that (Laine and Karras, "Stratified sampling for stochastic
- * transparency", 2011). The same permutation of the indices makes sequences of different
- * seeds independent.
+ * reversed bits it is such a permutation (Laine and Karras, "Stratified sampling for
+ * stochastic transparency", 2011). The same permutation of the indices makes sequences of
+ * different seeds independent.
  *
  * Squares go to triangles by (1 - sqrt u, v), and to the disk by concentric squares
  * (Shirley and Chiu, 1997), which keep near points near; a point of the disk is the foot
- * of a direction that is distributed as its cosine (Malley). */
+ * of a direction distributed as its cosine (Malley). */
 #include "rad/beyond/sequence.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static inline uint64_t reverse_bits(uint64_t x)
     return x >> 32 | x << 32;
 }
 
-/* Permutes by multiplications that carry upwards. */
+/* Permutes by multiplications, which carry upwards. */
 static uint32_t permute(const struct sequence *sequence, int k, uint32_t x)
 {
     x ^= x * 0x3d20adeau;

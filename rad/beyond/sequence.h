@@ -6,12 +6,12 @@
 
 #include "geom/triangle.h"
 
-/* A sequence of points in the unit cube of four dimensions: the first 2^k of them are
- * spread evenly over it (Sobol), and those of different seeds have nothing to do with
- * each other (Owen's scrambling). */
+/* A sequence of points in the unit cube of four dimensions: the first 2^k points fill the
+ * cube evenly (Sobol), and those of different seeds are independent (Owen's
+ * scrambling). */
 enum { SEQUENCE_DIMENSIONS = 4 };
 
-/* Points of a sequence. Behind them come the same ones again. */
+/* Points of a sequence. Behind the last the first comes again. */
 enum { SEQUENCE_POINTS = 1 << 16 };
 
 struct sequence {
@@ -33,7 +33,7 @@ static inline struct vec3 triangle_of_square(const struct triangle *t, double u,
 }
 
 /* The image of (u, v) in [0, 1) as a direction, distributed as the cosine to `normal`.
- * `along` is at right angles to it; both are of length 1. */
+ * `along` is at right angles to `normal`; both are of length 1. */
 struct vec3 cosine_direction(struct vec3 normal, struct vec3 along, double u, double v);
 
 /* A direction of length 1 at right angles to one of length 1. */

@@ -1,11 +1,10 @@
 /* Checking a snapshot and its links.
  *
- * A file may say anything. Every number is compared with the numbers that a run could
- * have written, so that nothing later on meets a patch that does not exist, a NaN, or a
- * flux that overflows: the transfer of light relies on the precondition of
- * links_transfer(), that the links of a patch lead to patches that do not overlap, so
- * their exchange areas add up to no more than the area of the scene. That sum is checked
- * for each patch. */
+ * A file may say anything. Every number is compared with the numbers of possible runs, so
+ * nothing later on meets a patch that does not exist, a NaN, or a flux that overflows:
+ * the transfer of light relies on the precondition of links_transfer(), no overlap among
+ * the patches linked with one patch, so their exchange areas add up to no more than the
+ * area of the scene. This sum is checked for each patch. */
 #include "rad/beyond/snapshot.h"
 
 #include <math.h>
@@ -35,7 +34,7 @@ struct walk {
     int child[ID_MAX_LEVEL + 1]; /* child number of the patch at each level */
 };
 
-/* Moves on to the next patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
+/* Moves on to the next patch. Pre: not split at the level ID_MAX_LEVEL. */
 static void walk_on(struct walk *walk, uint8_t split)
 {
     if (split) {
@@ -62,7 +61,7 @@ static bool trees_are_whole(const struct snapshot *snapshot)
 
 /* --- numbers --- */
 
-/* No run exceeds these: they leave room for sums, and for radiosities as floats. */
+/* No run exceeds these, with room left for sums, and for radiosities as floats. */
 static const int64_t MOST_COUNTED = INT64_C(1) << 60;
 static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60;
 
@@ -159,8 +158,8 @@ static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
     return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
 }
 
-/* The blocker of a link of patches is a triangle; that of a link with a cluster is a
- * finite number, not negative. */
+/* The blocker of a link of patches is a triangle; of a link with a cluster, a finite
+ * number, not negative. */
 static bool blocker_is_sane(const struct link_check *check, const struct link *link)
 {
     const int32_t infinite = 0x7f800000;

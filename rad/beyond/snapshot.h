@@ -1,6 +1,6 @@
 /* The state of a run between two passes, without its links: all that later passes depend
- * on. Patches have no local numbers here; they are counted roots in order, each tree
- * depth first (forest_order()), so a snapshot is the same on any number of ranks.
+ * on. Patches have no local numbers here, but are counted roots in order, each tree depth
+ * first (forest_order()), so a snapshot is the same on any number of ranks.
  *
  * The state before the first pass, when all pairs of roots are linked, is one, too. */
 #ifndef RAD_BEYOND_SNAPSHOT_H
@@ -19,12 +19,12 @@ enum snapshot_number {
     SNAPSHOT_PASSES,         /* refinements */
     SNAPSHOT_ITERATIONS,     /* transfers of light */
     SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
-    SNAPSHOT_LIMITED,        /* memory limit that ended refinement, bytes; 0: none */
+    SNAPSHOT_LIMITED,        /* memory limit met by refinement, bytes; 0: none */
     /* work of all ranks so far */
     SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS,
     SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
     SNAPSHOT_ROUNDS,         /* of --accuracy */
-    SNAPSHOT_GATHER,         /* rays from a leaf, as --accuracy has raised them */
+    SNAPSHOT_GATHER,         /* rays from a leaf, as raised by --accuracy */
     SNAPSHOT_NUMBERS
 };
 
@@ -32,7 +32,7 @@ enum snapshot_value {
     SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light;
                                 HUGE_VAL: none */
     SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
-    SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
+    SNAPSHOT_EPSILON,        /* as lowered by --accuracy */
     SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* see struct accuracy */
     SNAPSHOT_VALUES
 };
@@ -41,7 +41,7 @@ struct snapshot {
     int64_t number[SNAPSHOT_NUMBERS];
     double value[SNAPSHOT_VALUES];
     int64_t root_count, patch_count, link_count;
-    uint8_t *split;     /* [patch_count] 1: it has children, else 0 */
+    uint8_t *split;     /* [patch_count] 1: has children, else 0 */
     struct rgb *leaves; /* [snapshot_leaf_count()] their radiosities, W/m^2 */
 };
 
@@ -55,9 +55,9 @@ static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
     return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
 }
 
-/* True if the splits are those of `root_count` whole trees, no deeper than IDs reach,
- * and every number and value is one that a run could have. Pre: the counts fit each
- * other. Errors: the fault, without a file's name, EXIT_USAGE. */
+/* True if the splits make `root_count` whole trees, no deeper than IDs reach, and every
+ * number and value is possible in a run. Pre: the counts fit each other. Errors: the
+ * fault, without a file's name, EXIT_USAGE. */
 bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
 /* The check of a snapshot's links, one after the other; their p and q are its patch
@@ -66,23 +66,23 @@ struct link_check {
     const struct scene *scene; /* borrowed */
     int64_t patch_count, cluster_count;
     int32_t *root;             /* [patch_count] */
-    double *area;              /* [cluster_count + patch_count] square scene units;
-                                  that of a node at its number + cluster_count */
+    double *area;              /* [cluster_count + patch_count] square scene units; a
+                                  node's at its number + cluster_count */
     double *load;              /* [as area] sum of the exchange areas so far */
     double most;               /* limit of a load */
     struct link last;
     bool begun;
 };
 
-/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows the
- * scene. `tree`: NULL if there are no clusters. */
+/* Pre: snapshot_check() has said yes, and root_count is the scene's. Borrows the scene.
+ * `tree`: NULL if there are no clusters. */
 struct link_check link_check_start(const struct snapshot *snapshot,
                                    const struct scene *scene,
                                    const struct cluster_tree *tree);
 void link_check_free(struct link_check *check);
 
-/* True if the next link is one that a run could have: numbers in their ranges, no pair of
- * nodes twice, no node that receives from more than there is, ascending order. */
+/* True if the next link is possible in a run: numbers in their ranges, no pair of nodes
+ * twice, no node receiving from more than there is, ascending order. */
 bool link_check_next(struct link_check *check, const struct link *link);
 
 #endif
