@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Deals `count` items, such as roots, to `ranks` ranks so that the sums of their weights
- * are even: item i goes to owner[i]. A pure function: all ranks get the same answer. */
+/* Deals `count` items, such as roots, to `ranks` ranks with even sums of weights: item i
+ * goes to owner[i]. A pure function: all ranks get the same answer. */
 void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner);
 
 #endif

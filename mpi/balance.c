@@ -9,7 +9,7 @@
 #include "geom/alloc.h"
 #include "mpi/plan.h"
 
-/* The transfers of a rank; the first is the load that it keeps. Returns their number. */
+/* The transfers of a rank; the first is the load kept. Returns their number. */
 static int own_transfers(const struct loads *loads, struct transfer *own)
 {
     struct transfer *plan = alloc_array(2 * (size_t)loads->ranks, sizeof *plan);

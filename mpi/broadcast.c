@@ -1,13 +1,12 @@
 /* Step 1: rank 0 reads, all receive.
  *
- * The prepared scene is sent, planes and areas included, and the octree that rank 0
- * builds over it: no rank repeats the work, none could end with other bits, and sending
- * an octree takes less time than building it. Both are packed into one block, of which
- * there is one per node where that pays (mpi/node.c). Ranks of a run share one machine
- * architecture: plain bytes.
+ * The prepared scene is sent, planes and areas included, and the octree built by rank 0:
+ * no rank repeats the work, none could end with other bits, and sending an octree takes
+ * less time than building it. Both are packed into one block, of which there is one per
+ * node where that pays (mpi/node.c). Ranks of a run share one machine architecture: plain
+ * bytes.
  *
- * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it
- * has. */
+ * The memory of rank 0 holds both twice for a moment. A single rank keeps its own. */
 #include "mpi/broadcast.h"
 
 static void pack_both(const struct scene *scene, const struct octree *octree,

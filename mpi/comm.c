@@ -1,7 +1,7 @@
 /* The ranks.
  *
  * MPICH and Open MPI wait by polling without pause. With fewer cores than ranks a
- * blocking collective then holds the core that the rank it waits for needs, and an 8-byte
+ * blocking collective then holds the core needed by the rank it waits for, and an 8-byte
  * reduction takes tens of milliseconds. So every collective here is the non-blocking one,
  * tested in a loop that soon yields the processor and later sleeps: where each rank has a
  * core of its own the first tests succeed and nothing is lost.
@@ -9,9 +9,9 @@
  * Yielding alone is not enough with many ranks: the scheduler may hand the core to
  * another waiting rank, again and again. Hence the sleep, short beside a refinement
  * level, and longer the longer a rank has waited: while rank 0 writes, the others are not
- * to wake all the time. Where there are as many processors as ranks it begins late: an
- * exchange goes on in steps, each when a rank tests, and one that sleeps holds up all. On
- * 16 cores rooms take .55 and .7 of the time, a Cornell box half of it. */
+ * to wake all the time. Where there are as many processors as ranks the sleep begins
+ * late: an exchange goes on in steps, each when a rank tests, and a sleeper holds up all.
+ * On 16 cores rooms take .55 and .7 of the time, a Cornell box half of it. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <sched.h>
@@ -38,7 +38,7 @@ enum {
     SHORTEST_SLEEP = 20, /* microseconds */
     LONGEST_SLEEP = 1000,
     SLEEP_GROWTH = 4, /* microseconds for each test in vain */
-    LARGE = 1 << 17   /* bytes; larger arrays go back to the system when they are freed */
+    LARGE = 1 << 17   /* bytes; larger arrays go back to the system when freed */
 };
 
 /* For the handler of exhausted memory, which has no argument. */
@@ -202,7 +202,7 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
     return comm_count(comm, sum);
 }
 
-/* Whole records, so that counts stay small. */
+/* Whole records, to keep counts small. */
 static MPI_Datatype record_of(size_t bytes)
 {
     MPI_Datatype record;
@@ -211,8 +211,8 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
-/* One message to each rank that gets something: no count is too large for MPI, and ranks
- * that have nothing for each other need not meet. The records of a rank for itself are
+/* One message to each rank with records to get: no count is too large for MPI, and ranks
+ * with nothing for each other need not meet. The records of a rank for itself are
  * copied. */
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
                     size_t bytes, int64_t *arriving)

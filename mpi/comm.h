@@ -13,19 +13,18 @@ struct comm {
     int rank, size;
 };
 
-/* Initialises MPI, unless it is; from here on, running out of memory ends all ranks with
+/* Initialises MPI if nobody has; from here on, running out of memory ends all ranks with
  * exit code 1. */
 void comm_start(struct comm *comm, int *argc, char ***argv);
 
-/* Collective. Waits for all ranks, and finalises MPI if comm_start() has initialised
- * it. */
+/* Collective. Waits for all ranks, and finalises MPI if comm_start() initialised MPI. */
 void comm_stop(struct comm *comm);
 
 /* Messages from one rank to another. Those of one tag never overtake each other. */
 enum comm_tag { TAG_RECORDS = 1, TAG_SCANLINE, TAG_EXCHANGE };
 
-/* Waits for a collective operation, or for a message to or from one rank, that does not
- * block, and leaves the processor to others meanwhile. */
+/* Waits for a collective operation, or for a message to or from one rank, without
+ * blocking, and leaves the processor to others meanwhile. */
 void comm_wait(MPI_Request *request);
 void comm_wait_message(MPI_Request *request);
 
@@ -38,11 +37,11 @@ void comm_add(const struct comm *comm, int64_t *numbers, int64_t count);
 /* Collective. The largest value over all ranks. */
 double comm_largest(const struct comm *comm, double value);
 
-/* Collective. All ranks end with the error of the lowest rank that has one. True if none
+/* Collective. All ranks end with the error of the lowest rank with one. True if none
  * has. */
 bool comm_agree(const struct comm *comm, struct error *error);
 
-/* A count as the int that MPI wants. A count that does not fit is fatal: exit code 1. */
+/* A count as an int, for MPI. A count too large is fatal: exit code 1. */
 int comm_count(const struct comm *comm, int64_t count);
 
 /* displacements[r] = counts[0] + ... + counts[r - 1]. Returns the sum of all counts. */
@@ -73,7 +72,7 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* Operations that this rank has waited for. */
+/* Operations waited for by this rank. */
 struct comm_counts {
     int64_t collectives;
     int64_t messages; /* log P for a collective of P ranks, and those to and from one */

@@ -1,13 +1,13 @@
-/* Step 5: light is transferred over the links, and proxies that received flux go home. A
- * proxy is the copy of a patch on a rank that is not its home.
+/* Step 5: light is transferred over the links, and proxies with new flux go home. A proxy
+ * is the copy of a patch on a rank other than its home.
  *
  * A total exchange: each rank tells each home which of its patches have received flux
- * over links that live there, and how much; homes add it up. Flux is an integer, so the
- * order does not matter.
+ * over the rank's links, and how much; homes add up the amounts. Flux is an integer, so
+ * the order does not matter.
  *
  * Rejected: a reduction of the flux of all patches, with log P messages for each rank in
- * place of up to P - 1. In a room of 1,004 triangles (--paper) it has 1.2 times the bytes
- * on 2 ranks, 2.1 times on 8, 4.3 times on 32. */
+ * place of up to P - 1. In a room of 1,004 triangles (--paper) a reduction has 1.2 times
+ * the bytes on 2 ranks, 2.1 times on 8, 4.3 times on 32. */
 #include "mpi/solver.h"
 
 #include <math.h>
@@ -44,7 +44,7 @@ struct wire_flux {
     int64_t flux[BANDS];
 };
 
-/* True of a proxy that has received flux. */
+/* True of a proxy with new flux. */
 static bool is_updated(const struct solver *solver, int64_t p)
 {
     static const int64_t NOTHING[BANDS];

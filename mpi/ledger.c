@@ -1,6 +1,6 @@
 /* The ledger: the work of all ranks in many phases, told with one exchange. A phase lasts
  * as long as its slowest rank, so the maxima of all phases together are the time of a
- * run, and the sums over ranks are the work that there was to do. */
+ * run, and the sums over ranks are the work there was. */
 #include "mpi/ledger.h"
 
 #include "geom/alloc.h"
@@ -12,7 +12,7 @@ void ledger_add(struct ledger *ledger, struct phase_work phase)
     ledger->items[ledger->count++] = phase;
 }
 
-/* phases[r * stride]: that of rank r. */
+/* phases[r * stride]: rank r's. */
 static void add_level(struct ledger *ledger, const struct phase_work *phases,
                       int64_t stride, int ranks)
 {

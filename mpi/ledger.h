@@ -1,4 +1,4 @@
-/* The work of each rank, phase by phase, in counts: they do not depend on a noisy
+/* The work of each rank, phase by phase, in counts, which do not depend on a noisy
  * machine. */
 #ifndef MPI_LEDGER_H
 #define MPI_LEDGER_H
@@ -13,13 +13,13 @@ struct phase_work {
     int32_t level;            /* of refinement, or 0 */
     int64_t pass;             /* of refinement, or 0 */
     struct level_share share; /* `done`: its work; the rest is of refinement, linking */
-    int64_t bytes;            /* that the rank sent for it */
+    int64_t bytes;            /* sent by the rank for the phase */
 };
 
 struct ledger {
-    struct phase_work *items; /* [count] phases that not all ranks know yet */
+    struct phase_work *items; /* [count] phases not known to all ranks yet */
     int64_t count, capacity;
-    struct work_sums sums[WORK_COUNT]; /* of phases that all ranks know */
+    struct work_sums sums[WORK_COUNT]; /* of phases known to all ranks */
     struct level_balance *levels;      /* [level_count] linking and refinement */
     int64_t level_count, level_capacity;
 };

@@ -20,10 +20,9 @@
  * 31 pairs more than the last, and a large root makes its whole line costly).
  *
  * Pairs are linked in rounds. Before each all ranks agree whether there is a next one:
- * not if any of them has got a signal, nor if, with a link for each of its pairs, the
- * links of all ranks might take more memory than there may be. So linking ends at a pair
- * that does not depend on the ranks. A rank that has got a signal leaves the rest of its
- * round.
+ * not if any has got a signal, nor if, with a link for each pair of the round, the links
+ * of all ranks might exceed the memory limit. So linking ends at a pair independent of
+ * the ranks. A rank with a signal leaves the rest of its round.
  *
  * With a tree above the roots there is one link to begin with, on rank 0. */
 #include "mpi/solver.h"
@@ -38,7 +37,7 @@ enum { ROUND = 65536 };
 /* A rank's state before a round, for the others. */
 struct linking_notice {
     int64_t links; /* made so far */
-    int64_t stop;  /* the signal that the rank has got, 0: none */
+    int64_t stop;  /* the signal of the rank, 0: none */
 };
 
 /* The links of all ranks so far. Waiting is idle time. */
@@ -73,7 +72,7 @@ static bool begin_round(struct solver *solver, int64_t number, int64_t pairs)
 }
 
 /* Collective. Links the pairs of these roots, each rank its own. False if a signal or the
- * memory limit has ended it. */
+ * memory limit has ended the step. */
 static bool link_pairs(struct solver *solver, const int32_t *roots, int64_t count)
 {
     struct model *model = &solver->model;

@@ -1,32 +1,32 @@
 /* The memory limit.
  *
  * Links and patches grow; clusters are there from the beginning. Before a level is split,
- * the number of links after it is known within a factor: each link that is to be split
- * becomes four at most (of a cluster with itself, ten), and is there itself until the end
- * of the level; a patch can get four children only once. Whether that fits is decided
- * from counts over all ranks, so all decide alike, and a limit that the user gives means
- * the same on any number of ranks: it is held against one copy of the patches and
- * clusters, though each rank has its own patches. The default limit promises no equal
- * results, but an end that is not the system's: it counts every copy, over all machines.
+ * the number of links after it is known within a factor: each link to be split becomes
+ * four at most (of a cluster with itself, ten), and is there itself until the end of the
+ * level; a patch can get four children only once. Whether there is room is decided from
+ * counts over all ranks, so all decide alike, and a limit given by the user means the
+ * same on any number of ranks: it is held against one copy of the patches and clusters,
+ * though each rank has its own patches. The default limit promises no equal results, but
+ * an end before the system's: it counts every copy, over all machines.
  *
- * Rejected: the memory that processes really hold, which depends on the system and the
+ * Rejected: the memory really held by processes, which depends on the system and the
  * ranks; a limit for links alone, since half of the memory is in small patches. */
 #include "mpi/memory.h"
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
 
-/* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
- * along with the forest (ranges, vectors of the solver, caps) and the same. */
+/* Bytes: a link with its share of the spare room in lists; a patch with all arrays beside
+ * the forest (ranges, vectors of the solver, caps) and the same. */
 enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 560, BYTES_PER_CLUSTER = 290 };
 
-/* Of a row of the final gather: three quarters of the patches are leaves; rays that end
- * on the same leaf have one term of 20 bytes, and three more where B rises over it. That
- * is 1.6 terms for each patch and ray in the Cornell box, 2.6 to 3 in rooms and
- * corridors, and 4.9 where most leaves look through an opening. */
+/* Of a row of the final gather: three quarters of the patches are leaves; rays with an
+ * end on the same leaf have one term of 20 bytes, and three more where B rises over the
+ * leaf. This makes 1.6 terms for each patch and ray in the Cornell box, 2.6 to 3 in rooms
+ * and corridors, and 4.9 where most leaves look through an opening. */
 enum { BYTES_PER_RAY = 60 };
 
-/* The part of the machines' memory that links, patches and clusters may take. */
+/* The part of the machines' memory for links, patches and clusters. */
 static const double SHARE = 0.8;
 
 /* The memory of a rank, as told to the others; no padding. */
@@ -35,9 +35,9 @@ struct machine {
     int64_t bytes, room; /* of the machine, of the rank; 0: unknown, no limit */
 };
 
-/* Bytes of all machines, each counted once, or of all ranks, if each of them may take no
- * more than that with the least room; 0 if a machine is unknown. Of an address space a
- * half is for what lists have grown by and do not use yet. */
+/* Bytes of all machines, each counted once, or of all ranks, if each may take no more
+ * than the rank with the least room; 0 if a machine is unknown. Of an address space a
+ * half is for the unused room of grown lists. */
 static int64_t machines_together(const struct comm *comm, int64_t bytes, int64_t room)
 {
     char name[MPI_MAX_PROCESSOR_NAME] = "";

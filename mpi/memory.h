@@ -9,21 +9,21 @@
 
 struct memory {
     int64_t limit;    /* bytes, 0: none */
-    int64_t reached;  /* the limit that has ended linking or refinement, 0: none has */
-    int copies;       /* of patches and clusters that count against the limit */
+    int64_t reached;  /* the limit met by linking or refinement, 0: none */
+    int copies;       /* of patches and clusters, counted against the limit */
     int rays;         /* of the final gather from a leaf of middling size */
     int64_t clusters; /* above the roots */
 };
 
 /* Collective. The links of all ranks and one copy of patches and clusters may take
- * `limit` bytes, or an eighth more than roots, their rows and clusters alone, if that is
- * more; 0: links and a copy for every rank may take most of the memory of the machines of
- * the run, each of which has `machine` bytes (0: unknown), and most of the `room` bytes
- * of each rank (0: no limit). */
+ * `limit` bytes, or an eighth more than roots, their rows and clusters alone, if more; 0:
+ * links and a copy for every rank may take most of the memory of the machines of the run,
+ * each of which has `machine` bytes (0: unknown), and most of the `room` bytes of each
+ * rank (0: no limit). */
 void memory_watch(struct memory *memory, const struct comm *comm, int64_t roots,
                   int64_t limit, int64_t machine, int64_t room);
 
-/* Bytes that links take, the rows of the final gather, and `copies` copies of the patches
+/* Bytes of links, of the rows of the final gather, and of `copies` copies of the patches
  * and clusters. */
 int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
                       int64_t patches);

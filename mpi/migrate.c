@@ -1,9 +1,8 @@
 /* Sending links: count, allocate, pack, one collective, unpack.
  *
- * On the way a link names its patches by their IDs. The receiver looks them up in its own
- * copy of the forest and creates what it lacks; a patch so created has its parent's
- * radiosity, as it has where it was first split, so a link means the same wherever it
- * lives. */
+ * On the way a link names its patches by their IDs. The receiver looks these up in its
+ * own copy of the forest and creates missing ones; a patch so created has its parent's
+ * radiosity, as every new child has, so a link means the same wherever it lives. */
 #include "mpi/migrate.h"
 
 #include <string.h>
@@ -44,7 +43,7 @@ static struct link unpack(const struct model *model, const struct wire_link *wir
     return link;
 }
 
-/* Packs the links that leave, destination by destination, and closes the gaps in `list`.
+/* Packs the leaving links, destination by destination, and closes the gaps in `list`.
  * `at` is where each destination's records begin, and is used up. */
 static struct wire_link *pack_leaving(const struct solver *solver, struct link_list *list,
                                       const int *destination, int *at, int64_t total)

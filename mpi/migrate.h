@@ -4,7 +4,7 @@
 
 #include "mpi/solver.h"
 
-/* Links that a rank sent to others, and got from them. */
+/* Links sent to other ranks, and received. */
 struct traffic {
     int64_t sent, received;
 };
@@ -12,8 +12,8 @@ struct traffic {
 enum { BYTES_PER_WIRE_LINK = 32 };
 
 /* Collective. Link i of `list` goes to rank destination[i]; those for this rank stay, in
- * order, in front of those that arrive, in the order of the ranks. Patches that a link
- * needs and this rank lacks are created. */
+ * order, in front of arriving ones, in the order of the ranks. Patches of a link that
+ * this rank lacks are created. */
 struct traffic links_migrate(struct solver *solver, struct link_list *list,
                              const int *destination);
 

@@ -1,25 +1,24 @@
 /* One copy per node.
  *
  * The ranks of a node find each other with MPI_Comm_split_type(), and one of them asks
- * for a window of MPI_Win_allocate_shared() that holds the whole block, since
- * implementations have a limit on the number of windows. It writes; the others begin to
- * look after a barrier. MPI_Win_sync() on either side of it orders the stores and the
- * loads; the epoch that these calls want, lock_all, is open as long as the window is.
+ * for a window of MPI_Win_allocate_shared() for the whole block, since implementations
+ * limit the number of windows. This rank writes; the others begin to look after a
+ * barrier. MPI_Win_sync() on either side of the barrier orders the stores and the loads;
+ * the epoch for these calls, lock_all, is open as long as the window is.
  *
  * Splitting a communicator and making a window are blocking calls, there are no others.
- * On fewer cores than ranks MPICH needs a second or two for them (16 ranks on 2 cores;
+ * On fewer cores than ranks MPICH needs a second or two for both (16 ranks on 2 cores;
  * mpi/comm.c says why), so small blocks, which save nothing, are not shared.
  *
- * A window may be refused, and it may be granted and not be there: it is a file in a file
- * system in memory, which in containers is often small, and a page that does not fit is a
- * SIGBUS when it is first touched. So the rank that fills it touches all of it, ready for
- * that signal, before the others hear that there is a window. All ranks of a node have
- * the window or none does, and then each has memory of its own. Nothing remains of a run
- * that is killed: the file has no name by the time that the window is there, with MPICH
- * and Open MPI.
+ * A window may be refused, and it may be granted and not be there: a window is a file in
+ * a file system in memory, which in containers is often small, and a page without room is
+ * a SIGBUS at the first touch. So the rank that fills the window touches all of it, ready
+ * for this signal, before the others hear of a window. All ranks of a node have the
+ * window or none does, and then each has memory of its own. Nothing remains of a killed
+ * run: the file has no name by the time the window is there, with MPICH and Open MPI.
  *
  * Patches are not shared, although there are more of them: every rank adds to its forest
- * while it refines, in an order of its own, and local indices are what links hold. */
+ * during refinement, in an order of its own, and links hold local indices. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <setjmp.h>
@@ -103,8 +102,8 @@ static void close_window(struct node_block *block)
     MPI_Win_free(&block->window);
 }
 
-/* Collective over the node. False on all of its ranks if there is no window; one that
- * only some have got cannot be freed, and is lost. */
+/* Collective over the node. False on all of its ranks if there is no window; a window of
+ * only some ranks cannot be freed, and is lost. */
 static bool open_window(struct node_block *block)
 {
     const struct comm *node = &block->node;

@@ -1,6 +1,6 @@
-/* A block of memory that the ranks of a node, a computer with memory of its own, have in
- * common. It is filled once and only looked at from then on. Where ranks cannot share,
- * each has a block to itself. */
+/* A block of memory for all ranks of a node, a computer with memory of its own: filled
+ * once and only looked at from then on. Where ranks cannot share, each has a block to
+ * itself. */
 #ifndef MPI_NODE_H
 #define MPI_NODE_H
 
@@ -8,10 +8,10 @@
 
 #include "mpi/comm.h"
 
-/* When blocks are shared. The tests vary it; phr takes node_policy(). */
+/* When blocks are shared. The tests vary the policy; phr takes node_policy(). */
 struct node_policy {
     size_t least_bytes; /* smaller blocks are not shared */
-    int ranks_max;      /* most ranks that share a block; 1: none do */
+    int ranks_max;      /* most ranks to share a block; 1: none do */
 };
 
 struct node_block {
@@ -20,10 +20,10 @@ struct node_block {
     size_t bytes;
     bool fills;       /* this rank fills `data`; rank 0 always does */
     bool shared;      /* `data` is in a window; else in `memory` */
-    double seconds;   /* spent on making the contents; 0 on ranks that only receive */
+    double seconds;   /* spent on making the contents; 0 on ranks only receiving */
     void *memory;     /* owned, NULL if shared */
     MPI_Win window;
-    struct comm node; /* the ranks that share the block; only if shared */
+    struct comm node; /* the ranks sharing the block; only if shared */
 };
 
 static inline struct node_policy node_policy(void)
@@ -38,7 +38,7 @@ void node_block_create(struct node_block *block, const struct comm *comm, size_t
 /* Collective. The contents of rank 0's block come to all. */
 void node_block_spread(struct node_block *block, const struct comm *comm);
 
-/* Collective over the ranks that share it. A block that is all zero is none. */
+/* Collective over the ranks sharing the block. A block of zeros is none. */
 void node_block_destroy(struct node_block *block);
 
 #endif

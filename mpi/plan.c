@@ -11,7 +11,7 @@
 #include "geom/alloc.h"
 
 /* The rank with the largest (sign 1) or smallest (sign -1) load among those whose
- * distance to their target has that sign; -1 if there is none. */
+ * distance to their target has this sign; -1 if there is none. */
 static int extreme_rank(const int64_t *loads, const int64_t *targets, int ranks, int sign)
 {
     int found = -1;

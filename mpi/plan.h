@@ -11,8 +11,8 @@ struct transfer {
     int64_t load;
 };
 
-/* Plans the transfers that even out `loads` (>= 0) of `ranks` ranks. `transfers` has room
- * for 2 * ranks entries. Returns their number. After them each rank has the mean load, or
+/* Plans the transfers to even out `loads` (>= 0) of `ranks` ranks. `transfers` has room
+ * for 2 * ranks entries. Returns their number. Afterwards each rank has the mean load, or
  * one unit more on the lowest ranks where the mean is not whole. A rank sends or
  * receives, never both. */
 int plan_transfers(const int64_t *loads, int ranks, struct transfer *transfers);

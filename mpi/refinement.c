@@ -1,14 +1,12 @@
 /* Step 4: Algorithm 1 of the paper, line by line in refine() below.
  *
- * Links are split breadth first: all that are to be split make a level, are dealt to the
- * ranks (mpi/balance.h) and split; those of their children that are to be split too make
- * the next level. (Depth first, a link that is split down to the deepest level keeps one
- * rank busy.)
+ * Links are split breadth first: all links to be split make a level, are dealt to the
+ * ranks (mpi/balance.h) and split; those of their children to be split too make the next
+ * level. (Depth first, a link split down to the deepest level keeps one rank busy.)
  *
  * A level begins with one exchange: of loads, the first two steps of LoadBalance, and of
- * counts by which all ranks decide alike whether there is a level, and whether there is
- * room for it (mpi/memory.h). Links stay where they were made, and light is transferred
- * over them there. */
+ * counts by which all ranks decide alike whether there is a level, and room for its links
+ * (mpi/memory.h). Links stay where they were made, and light is transferred there. */
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -23,12 +21,12 @@
 
 /* Counts of a rank before a level. */
 struct level_counts {
-    int64_t prolific;   /* links that are to be split */
+    int64_t prolific;   /* links to be split */
     int64_t of_patches; /* of these, links with a patch on a side */
-    int64_t load;       /* predicted work of splitting them, in tests */
-    int64_t kept;       /* links that are not to be split */
-    int64_t made;       /* patches that the rank has made and not shared */
-    int64_t stop;       /* signal that it has got, 0: none */
+    int64_t load;       /* predicted work of the splits, in tests */
+    int64_t kept;       /* links not to be split */
+    int64_t made;       /* patches made and not shared by the rank */
+    int64_t stop;       /* signal of the rank, 0: none */
 };
 
 /* A level of Algorithm 1, on one rank. */
@@ -37,7 +35,7 @@ struct level {
     int64_t *loads;          /* [ranks] predicted work of each before links move */
     struct phase_work phase;
     double start;            /* of splitting, seconds */
-    int64_t work;            /* of this rank before that, tests */
+    int64_t work;            /* of this rank before the splits, tests */
 };
 
 /* Predicted work of splitting links, in tests: their costs (Sec. 3.3.1). */
@@ -117,12 +115,11 @@ static void share_splits(struct solver *solver)
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
-/* A link that is being split and its four children. */
+/* A link being split and its four children. */
 enum { LINKS_PER_SPLIT = 5 };
 
 /* Collective. True if the memory limit lets the level be split. Ranks may have made the
- * same patches: only where there is no room for all of them are they shared and
- * counted. */
+ * same patches: only without room for all are patches shared and counted. */
 static bool level_fits(struct solver *solver, const struct level_counts *level)
 {
     const struct memory *memory = &solver->memory;
@@ -134,8 +131,8 @@ static bool level_fits(struct solver *solver, const struct level_counts *level)
     return memory_has_room(memory, links, split, solver->turn.shared);
 }
 
-/* Collective. True if there is another level: a rank has a link that is to be split. A
- * signal ends refinement, and so does the memory limit. */
+/* Collective. True if there is another level: a rank has a link to split. A signal ends
+ * refinement, and so does the memory limit. */
 static bool begin_level(struct solver *solver, const struct link_list *prolific,
                         struct level *level)
 {
@@ -192,7 +189,7 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
 
 /* --- step 4 --- */
 
-/* Begins a pass: renews the bounds on light that refinement reads. */
+/* Begins a pass: renews the bounds on light for refinement. */
 static void begin_pass(struct solver *solver)
 {
     double start = comm_seconds();
@@ -217,7 +214,7 @@ static bool goes_on(struct solver *solver, const struct link_list *prolific, int
     return signals_seen() == 0;
 }
 
-/* Lets a new link that is not to be split join those that carry light. */
+/* Lets a new link not to be split join those that carry light. */
 static void keep_link(struct solver *solver, struct link *link)
 {
     if (solver->model.method.keep_link)
@@ -225,7 +222,7 @@ static void keep_link(struct solver *solver, struct link *link)
     link_list_append(&solver->links, *link);
 }
 
-/* Enters a level into the ledger; the children that are to be split make the next one. */
+/* Enters a level into the ledger; the children to be split make the next one. */
 static void end_level(struct solver *solver, struct link_list *prolific,
                       struct link_list *next, struct level *level)
 {
@@ -245,8 +242,8 @@ static bool is_prolific(const struct solver *solver, const struct link *link)
     return solver->model.method.side_to_split(&solver->model, link) != NODE_NONE;
 }
 
-/* Moves the links that are to be split from the rank's links to `prolific`. In the first
- * pass the others are new, too. */
+/* Moves the links to be split from the rank's links to `prolific`. In the first pass the
+ * others are new, too. */
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     struct model *model = &solver->model;
@@ -310,8 +307,8 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
     }
 }
 
-/* Collective. The links that the memory limit leaves unsplit join the others, and divide
- * no patch. At the end all ranks agree on whether a signal has come meanwhile. */
+/* Collective. The links left unsplit by the memory limit join the others, and divide no
+ * patch. At the end all ranks agree on whether a signal has come meanwhile. */
 static void keep_unsplit(struct solver *solver, struct link_list *prolific,
                          struct level *level)
 {

@@ -77,7 +77,7 @@ static void pack(struct solver *solver, const struct rgb *vector)
     solver->account.copied += routes_leaves(routes, rank);
 }
 
-/* Gives the leaves of a home the values that it has sent. */
+/* Gives the leaves of a home the values received from there. */
 static void renew_home(struct solver *solver, int home, struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;

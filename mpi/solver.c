@@ -1,4 +1,4 @@
-/* The state of one rank, and what it reports at the end. */
+/* The state of one rank, and its report at the end. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 600
 #include <sys/resource.h>
@@ -50,7 +50,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver);
 }
 
-/* Bytes that this process held at most, 0 where the system does not tell. */
+/* Most bytes ever held by this process, 0 where the system does not tell. */
 static int64_t peak_memory(void)
 {
 #ifdef HAVE_RUSAGE
@@ -134,7 +134,7 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     memcpy(stats->messages_with, largest + 2, sizeof stats->messages_with);
 }
 
-/* Patches of other homes that links of this rank lead to. */
+/* Patches of other homes at an end of this rank's links. */
 static int64_t count_proxies(const struct solver *solver)
 {
     const struct forest *forest = solver->model.forest;
@@ -153,11 +153,11 @@ static int64_t count_proxies(const struct solver *solver)
     return count;
 }
 
-/* Transfers 1 and leaves no trace in the accounts: it is not of the method. */
+/* Transfers 1 and leaves no trace in the accounts: not a part of the method. */
 static void carry_ones_unseen(struct solver *solver)
 {
     struct account before = solver->account;
-    link_list_sort(&solver->links); /* those of a finished run that was resumed are not */
+    link_list_sort(&solver->links); /* those of a finished, resumed run are not */
     solver_carry_ones(solver);
     solver->account = before;
 }

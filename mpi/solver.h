@@ -1,5 +1,5 @@
 /* The distributed algorithm: the state of one rank, and the steps of the paper's Sec. 3.2
- * that work on it. Every step is collective. */
+ * on this state. Every step is collective. */
 #ifndef MPI_SOLVER_H
 #define MPI_SOLVER_H
 
@@ -20,14 +20,14 @@
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
-    int64_t divided;                           /* own patches that are new */
-    int64_t stop;                              /* the signal that it has got */
+    int64_t divided;                           /* own new patches */
+    int64_t stop;                              /* the signal of the rank */
 };
 
 /* Adds a ballot to a sum of ballots, in any order. */
 void ballot_add(struct ballot *sum, const struct ballot *ballot);
 
-/* Records of radiosities that a ballot takes: it travels with them. */
+/* The size of a ballot in records of radiosities, with which it travels. */
 enum {
     BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb)
 };
@@ -38,15 +38,15 @@ struct homes {
     bool *own;  /* [roots] owner[root] == rank */
 };
 
-/* The radiosities that homes tell all ranks in step 7, over the same trees: home by home
+/* The radiosities told by homes to all ranks in step 7, over the same trees: home by home
  * those of leaves whose B can change, roots in order and depth first, and behind them the
- * home's ballot. Found once, so that transfers need no IDs, counts or searching. */
+ * home's ballot. Found once, so transfers need no IDs, counts or searching. */
 struct routes {
     int32_t *leaves;         /* [at[ranks]] local number of the leaf of each record */
     int *counts;             /* [ranks] records of each home */
     int *at;                 /* [ranks + 1] where those of each home begin */
     struct rgb *radiosities; /* [at[ranks]] room for the records */
-    int64_t trees;           /* patches that there were when the routes were renewed */
+    int64_t trees;           /* patches there were when the routes were renewed */
 };
 
 /* The number of leaves of a home. */
@@ -61,9 +61,9 @@ struct turn {
     int64_t iteration;  /* transfers of light so far */
     int64_t first_new;  /* patches from here on were created in this pass */
     int64_t shared;     /* patches up to here are the same on all ranks */
-    int64_t split_here; /* links that this rank split in this pass */
-    bool fresh;         /* links have changed since light went over them */
-    int stop;           /* signal that some rank has got, 0: none; the same on all */
+    int64_t split_here; /* links split by this rank in this pass */
+    bool fresh;         /* links have changed since the last transfer */
+    int stop;           /* signal of some rank, 0: none; the same on all */
 };
 
 /* The accounts of this rank, for the report. */
@@ -84,11 +84,10 @@ struct vote;
 /* After step 9: the light is there; a signal has come; or links want another pass. */
 enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 
-/* The parts of steps that can be done in two ways: the paper's, and phr's own. NULL: an
- * empty part. */
+/* The variable parts of steps: the paper's, and phr's own. NULL: an empty part. */
 struct steps {
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
-    /* 5: adds flux over the links that live here */
+    /* 5: adds flux over the links living here */
     void (*transfer)(struct solver *solver, const struct rgb *vector);
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
     void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
@@ -105,7 +104,7 @@ struct solver {
     const struct comm *comm;   /* borrowed */
     struct progress *progress; /* borrowed; NULL: nobody looks */
     struct model model;        /* scene, octree, forest, criterion; the forest is owned */
-    struct link_list links;    /* the links that live here ("allInteractions") */
+    struct link_list links;    /* the links living here ("allInteractions") */
     struct homes homes;
     struct routes routes;      /* of radiosities from the homes to all ranks */
     struct turn turn;
@@ -129,7 +128,7 @@ struct vote {
     double remaining;  /* change of energy, or bound on the remaining error, relative to
                           all light; HUGE_VAL: none */
     double absorbed;   /* W, areas in square scene units, like the next */
-    double escaped;    /* light that leaves surfaces, less light that links deliver */
+    double escaped;    /* light leaving surfaces, less light delivered by links */
 };
 
 /* The paper's steps, with links of this method. Borrows comm, scene and octree. */
@@ -140,25 +139,25 @@ void solver_destroy(struct solver *solver);
 
 /* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, of its
  * top with itself. False if a signal (solver->turn.stop) or the memory limit
- * (memory.reached) has ended it: then only the first pairs have links. */
+ * (memory.reached) has ended the step: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
-/* Step 3: re-assignment. Roots get homes so that the sums of their areas are even, and
- * their links go home. */
+/* Step 3: re-assignment. Roots get homes with even sums of area, and their links go
+ * home. */
 void solver_assign_roots(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches
- * were split. Refinement that meets the memory limit ends there, and does not begin again
- * as long as the limit is the same. False if a signal (solver->turn.stop) has ended it:
- * then it counts as not begun, and there is no light over the links there are. */
+ * were split. Refinement ends at the memory limit, and does not begin again as long as
+ * the limit is the same. False if a signal (solver->turn.stop) has ended the step, which
+ * then counts as not begun, without light over the links there are. */
 bool solver_refine(struct solver *solver);
 
 /* Local. Renews the routes, if patches are new. Pre: all ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
 
-/* Step 5: light is transferred over the links there are, and proxies that received flux
- * go home. */
+/* Step 5: light is transferred over the links there are, and proxies with new flux go
+ * home. */
 void solver_gather(struct solver *solver);
 
 /* The transfer alone, of any vector [patches]. Pre: the links are sorted. */

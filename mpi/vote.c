@@ -1,12 +1,11 @@
 /* Step 8: the vote on another iteration.
  *
  * Each rank casts a ballot of integers and maxima, which travels with the radiosities of
- * its leaves, and all add them up: on any number of ranks the outcome is the same. Energy
- * that changes by little ends the iterations, a bound those of mpi/beyond/descent.c.
+ * its leaves, and all add them up: on any number of ranks the outcome is the same. A
+ * small change of energy ends the iterations, a bound those of mpi/beyond/descent.c.
  *
- * The power that escapes is the power that leaves surfaces, emitted or reflected, less
- * the power that links delivered: an open scene's real loss, plus the power that form
- * factors lack or have too much. */
+ * The escaped power is the power leaving surfaces, emitted or reflected, less the power
+ * delivered by links: an open scene's real loss, plus the errors of form factors. */
 #include "mpi/solver.h"
 
 #include <string.h>
