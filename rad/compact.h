@@ -16,7 +16,7 @@ static inline float float_below(double x)
     return (double)f > x ? nextafterf(f, 0.0f) : f;
 }
 
-/* Pre: 1 <= x; above 1.875 * 2^31 it counts as that. */
+/* Pre: 1 <= x; above 1.875 * 2^31, x counts as this number. */
 static inline uint8_t compact8(double x)
 {
     float f = (float)fmin(x, 4e9);

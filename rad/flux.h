@@ -3,13 +3,13 @@
  * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k). Integer
  * sums do not depend on their order, so no result depends on which rank held which link.
  * Each transfer has its own k, chosen so that no flux can overflow (rad/link.h); k of a
- * run, for powers that ranks add, is chosen once. flux_add() stops at FLUX_LIMIT; the
- * sum of non-negative numbers that stops at a limit is the same in any order too, so "it
+ * run, for powers added by ranks, is chosen once. flux_add() stops at FLUX_LIMIT; a sum
+ * of non-negative numbers stopping at a limit is the same in any order too, so "it
  * diverged" is seen by all ranks alike.
  *
- * Rejected: sums in double (their last bits depend on the order, and one bit is enough
- * to split a patch on 3 ranks that is whole on 2), and reproducible floating-point sums
- * (six words an accumulator where one integer does). */
+ * Rejected: sums in double (their last bits depend on the order, and one bit is enough to
+ * split a patch on 3 ranks that is whole on 2), and reproducible floating-point sums (six
+ * words an accumulator where one integer does). */
 #ifndef RAD_FLUX_H
 #define RAD_FLUX_H
 
@@ -18,7 +18,7 @@
 
 #include "geom/scene.h"
 
-/* A sum that reaches this has diverged. */
+/* A sum reaching this has diverged. */
 #define FLUX_LIMIT (INT64_C(1) << 62)
 
 struct flux_unit {
@@ -27,7 +27,7 @@ struct flux_unit {
 };
 
 /* The unit in which sums up to `largest` watts stay below FLUX_LIMIT: a power of two.
- * Below 2^-960 it is that of 2^-960. Pre: 0 <= largest. */
+ * Below 2^-960 it is the unit of 2^-960. Pre: 0 <= largest. */
 static inline struct flux_unit flux_unit_for(double largest)
 {
     int exponent;

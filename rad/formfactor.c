@@ -13,12 +13,11 @@
  * no bound when a small i lies close to a large j (F = 24 where 0.968 is right).
  * Wallace's disk has the area of the source j in both places; computed from the smaller
  * patch, its source is the larger one, hence the maximum, and G is symmetric. Of patches
- * that all but touch, the four disks of one side overlap as seen from the other; where
- * that makes G larger than the smaller patch, it is cut down to it, so F <= 1 in both
- * directions.
+ * that all but touch, the four disks of one side overlap as seen from the other; a G
+ * larger than the smaller patch is cut down to its area, so F <= 1 in both directions.
  *
- * Sub-areas below each other's horizon exchange nothing, whatever is between them: they
- * get no ray. */
+ * Sub-areas below each other's horizon exchange nothing, whatever is in between, and get
+ * no ray. */
 #include "rad/formfactor.h"
 
 #include <math.h>

@@ -15,7 +15,7 @@ struct facet {
     struct triangle triangle;
     struct plane plane;
     double area;
-    int32_t input; /* input triangle that it lies on */
+    int32_t input; /* input triangle of the facet */
 };
 
 struct facet facet_make(const struct forest *forest, int32_t patch);
@@ -38,7 +38,7 @@ double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct 
                      struct vec3 normal_y, double area_y);
 
 /* G of a pair by Eq. 2 and 16 rays. `*blocker` is the guess of octree_block(); `*seen`
- * becomes the share of the rays that arrive, 0 to 1. */
+ * becomes the share of arriving rays, 0 to 1. */
 double exchange_area(const struct facet *p, const struct facet *q,
                      const struct octree *octree,
                      int32_t *blocker, double *seen, struct octree_counts *counts);

@@ -66,8 +66,7 @@ static inline int id_compare(struct patch_id a, struct patch_id b)
     return (x > y) - (x < y);
 }
 
-/* True for what can be the ID of a patch: a sentinel in one of the 16 places that it may
- * have. */
+/* True for what can be the ID of a patch: a sentinel in one of its 16 places. */
 static inline bool id_is_valid(struct patch_id id)
 {
     uint32_t rest = id.hierarchy;

@@ -1,14 +1,14 @@
 /* Links: making, splitting, transferring.
  *
  * A form factor takes as long as 11 to 14 tests of 26 to 34 ns (build/mpi/prices, three
- * rooms) and counts as 12: that predicts the seconds of a level within 10 %, RMS, tests
+ * rooms) and counts as 12: this predicts the seconds of a level within 10 %, RMS, tests
  * alone within 30. Two are in link_cost(), as half of the parent's cost is in `cost`.
  *
- * A child inherits the last blocker, which is tested first; one that gets a link hands
- * its own on to the next.
+ * A child inherits the last blocker, which is tested first; a child with a link hands its
+ * own on to the next.
  *
- * Where no ray arrives there is no link: without energy it would never be split, nor
- * would it carry light. */
+ * Where no ray arrives there is no link: one without energy would never be split, nor
+ * carry light. */
 #include "rad/link.h"
 
 #include "geom/alloc.h"
@@ -82,7 +82,7 @@ int link_split(struct model *model, const struct link *link, int32_t patch,
                  : !model->method.make_link(model, other, &facet_other, child, &facet,
                                             &parent, made))
             continue;
-        parent.blocker = made->blocker; /* it is likely to block the next child, too */
+        parent.blocker = made->blocker; /* likely to block the next child, too */
         count++;
     }
     return count;

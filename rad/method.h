@@ -1,6 +1,6 @@
-/* The seam between the paper's method and what phr adds to it: a table of functions.
- * PAPER is the paper's, of functions of rad/; DEFAULT is phr's, of functions of
- * rad/beyond/; an ablation is either with an entry exchanged (rad/beyond/default.c). */
+/* The seam between the paper's method and phr's own: a table of functions. PAPER is the
+ * paper's, of functions of rad/; DEFAULT is phr's, of functions of rad/beyond/; an
+ * ablation is either with an entry exchanged (rad/beyond/default.c). */
 #ifndef RAD_METHOD_H
 #define RAD_METHOD_H
 
@@ -20,40 +20,37 @@ struct model;
 enum { METHOD_CHILDREN_MAX = 10 };
 
 struct method {
-    /* The ID of a node of the trees, and the node with an ID; a patch that is not there
-     * yet is made. */
+    /* The ID of a node of the trees, and the node with an ID; a missing patch is made. */
     struct patch_id (*node_id)(const struct model *model, int32_t node);
     int32_t (*node_reach)(const struct model *model, struct patch_id id);
 
-    /* Power that epsilon is relative to, W, areas in square scene units. NULL: the
+    /* The power of which epsilon is a part, W, areas in square scene units. NULL: the
      * emitted power. */
     double (*light_power)(struct model *model);
 
-    /* The link that there is at first. NULL: all pairs of roots are linked. */
+    /* The first link. NULL: all pairs of roots are linked. */
     struct link (*first_link)(void);
 
     /* Before a pass: what refinement reads of the solution so far. NULL: nothing else. */
     void (*prepare)(struct model *model);
 
     /* The link kernel: makes the link between patches p and q, with its form factor and
-     * its cost. `parent` is the link that was split, NULL: there is none. False if there
-     * is no link. */
+     * its cost. `parent` is the split link, NULL: none. False if there is no link. */
     bool (*make_link)(struct model *model, int32_t p, const struct facet *facet_p,
                       int32_t q,
                       const struct facet *facet_q, const struct link *parent,
                       struct link *link);
 
-    /* The side of the link that has to be split, or NODE_NONE. Reads the radiosities of
-     * the last iteration. */
+    /* The side of the link to be split, or NODE_NONE. Reads the radiosities of the last
+     * iteration. */
     int32_t (*side_to_split)(const struct model *model, const struct link *link);
 
-    /* Splits this side of the link, unless it is split already, and makes the links of
-     * its children with the other side. Returns their number, 0..METHOD_CHILDREN_MAX. */
+    /* Splits this side of the link, unless split already, and makes the links of its
+     * children with the other side. Returns their number, 0..METHOD_CHILDREN_MAX. */
     int (*split_link)(struct model *model, const struct link *link, int32_t side,
                       struct link *children);
 
-    /* A link is not split: it is new, or was there before. NULL: nothing is to be
-     * done. */
+    /* A link, new or not, stays unsplit. NULL: nothing is to be done. */
     void (*keep_link)(struct model *model, struct link *link, bool is_new);
 
     /* Transfers light over all links: adds G x of either side to the flux of the other.

@@ -1,5 +1,5 @@
-/* The scene with its patches, the method and its thresholds: the one argument that links,
- * refinement and push-pull share. Identical on all ranks but for the counters. */
+/* The scene with its patches, the method and its thresholds: the one argument shared by
+ * links, refinement and push-pull. Identical on all ranks but for the counters. */
 #ifndef RAD_MODEL_H
 #define RAD_MODEL_H
 
@@ -27,7 +27,7 @@ struct criterion {
     enum form_factor form_factor;
     enum solver_kind solver;
     enum balance balance;
-    double epsilon;         /* energy or error of a link that splits it, relative to
+    double epsilon;         /* energy or error at which a link is split, relative to
                                light_power() of the method */
     double accuracy;        /* error of the leaves down to which epsilon is lowered and
                                rays are added, relative RMS; 0: these stay */
@@ -42,7 +42,7 @@ struct criterion {
 };
 
 enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
-enum { TESTS_PER_FORM_FACTOR = 12 }; /* tests that take as long as one: rad/link.c */
+enum { TESTS_PER_FORM_FACTOR = 12 }; /* tests taking as long as one: rad/link.c */
 
 struct cluster_light;
 
@@ -53,19 +53,17 @@ struct model {
     struct cluster_light *clusters; /* above the roots; NULL: none */
     struct criterion criterion;
     struct method method;
-    struct flux_unit flux_unit; /* of powers that ranks add */
-    double area, whole_area; /* of the scene without a sky, and with it, square scene
-                              * units */
+    struct flux_unit flux_unit; /* of powers added by ranks */
+    double area, whole_area; /* of the scene without and with a sky, square scene units */
     double emitted_power;   /* scene_entering_power(), W */
     double absorptance;     /* 1 less the largest reflectance of any band, 1 */
     double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far on form factors, in tests */
-    int64_t rays_spared;    /* rays not fired, of 16 for each pair that this rank has
-                               looked at */
-    int64_t walled_off;     /* links that ended on this rank because a proof says that
-                               they are blocked */
+    int64_t rays_spared;    /* rays not fired, of 16 for each pair looked at by this
+                               rank */
+    int64_t walled_off;     /* links that ended on this rank by a proof of a wall */
 };
 
 /* Work of this rank so far, in tests of the octree. */
@@ -79,7 +77,7 @@ struct model model_make(const struct scene *scene, const struct octree *octree,
                         struct forest *forest, const struct criterion *criterion,
                         struct method method);
 
-/* Changes epsilon of the criterion, and the threshold with it. */
+/* Changes epsilon of the criterion, and the threshold accordingly. */
 void model_set_epsilon(struct model *model, double epsilon);
 
 #endif

@@ -1,7 +1,7 @@
 /* BF refinement (Sec. 2.2 and 3.3): "if the total exchanged energy exceeds a certain
- * threshold, the patch with the bigger area is subdivided". The energy is that of Eq. 2,
- * v_pq F_pq A_p B_q, both ways together, summed over the bands. Nothing is split that
- * may not be. */
+ * threshold, the patch with the bigger area is subdivided". The energy is Eq. 2's, v_pq
+ * F_pq A_p B_q, both ways together, summed over the bands. Only patches that may be split
+ * are. */
 #include "rad/oracle.h"
 
 bool patch_may_split(const struct model *model, int32_t patch)

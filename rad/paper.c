@@ -1,6 +1,5 @@
-/* The paper's method: every pair of roots is linked, by disks and 16 rays; a link is
- * split if it carries too much energy; light goes over the link to the patches
- * themselves. */
+/* The paper's method: every pair of roots is linked, by disks and 16 rays; a link with
+ * too much energy is split; light goes over the link to the patches themselves. */
 #include "rad/link.h"
 #include "rad/oracle.h"
 

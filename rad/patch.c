@@ -1,10 +1,9 @@
 /* The patch forest.
  *
- * A patch is 40 bytes, and 24 more for its radiosity, which is a vector of its own: what
- * is transferred is either that or a vector of a solver. Its corners, normal and area
- * follow from its root and its ID, so they are not stored. The four children of
- * a patch lie side by side, hence one number finds them all and 0 (always a root, never
- * a child) means none. */
+ * A patch is 40 bytes, and 24 more for its radiosity, which is a vector of its own: a
+ * transfer takes this or a vector of a solver. Its corners, normal and area follow from
+ * its root and its ID, so none is stored. The four children of a patch lie side by side,
+ * hence one number finds them all and 0 (always a root, never a child) means none. */
 #include "rad/patch.h"
 
 #include "geom/alloc.h"

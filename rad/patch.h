@@ -1,9 +1,9 @@
 /* Patches: one quadtree over each root triangle.
  *
- * Every rank holds the whole forest (paper Sec. 3.1); copies of patches on ranks that are
- * not home to their root are the paper's proxies. Patch number r < root_count is root r;
- * other numbers follow the order of creation, which differs from rank to rank: they never
- * leave a rank. IDs travel. */
+ * Every rank holds the whole forest (paper Sec. 3.1); copies of patches away from their
+ * root's home are the paper's proxies. Patch number r < root_count is root r; other
+ * numbers follow the order of creation, which differs from rank to rank, and never leave
+ * a rank. IDs travel. */
 #ifndef RAD_PATCH_H
 #define RAD_PATCH_H
 
@@ -36,8 +36,8 @@ struct forest {
     struct rgb *radiosity;     /* [count] B, W/m^2; of an inner patch the mean over its
                                   leaves */
     float *ranges;             /* [ranged] see rad/beyond/range.h; NULL: there are none */
-    struct rgb *above;         /* [root_count] irradiance that clusters hand down to
-                                  each root, W/m^2; NULL: there are none */
+    struct rgb *above;         /* [root_count] irradiance handed down by clusters to each
+                                  root, W/m^2; NULL: no clusters */
     double *caps;              /* [count] factor of the irradiance of each leaf, 1; NULL:
                                   there are none; see rad/beyond/conjugate.h */
     int64_t count, capacity, radiosity_capacity, ranged;
@@ -57,15 +57,14 @@ static inline bool patch_is_leaf(const struct patch *patch)
  * patch. May move `patches`. Pre: its level is below ID_MAX_LEVEL. */
 void forest_split(struct forest *forest, int32_t patch);
 
-/* Local number of the patch with this ID; missing ones on the way to it are created.
- * Pre: id_is_valid(id) and id.root < root_count. */
+/* Local number of the patch with this ID; missing ones on the way there are created. Pre:
+ * id_is_valid(id) and id.root < root_count. */
 int32_t forest_reach(struct forest *forest, struct patch_id id);
 
 /* Corners, recomputed from the root. Scene units. */
 struct triangle forest_triangle(const struct forest *forest, int32_t patch);
 
-/* Area, square scene units: the root's times 4^-level, so that children add up
- * exactly. */
+/* Area, square scene units: the root's times 4^-level, so children add up exactly. */
 static inline double forest_area(const struct forest *forest, int32_t patch)
 {
     struct patch_id id = forest->patches[patch].id;
@@ -79,7 +78,7 @@ static inline const struct material *forest_material(const struct forest *forest
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
 
-/* Numbers under all roots that have an area. */
+/* Numbers under all roots with an area. */
 struct forest_counts {
     int64_t patches, leaves;
 };
@@ -87,15 +86,15 @@ struct forest_counts {
 struct forest_counts forest_count(const struct forest *forest);
 
 /* The local numbers of all patches, roots in order and each tree depth first: as a
- * sequence of IDs the same on all ranks that have the same trees. [count], to be freed
- * with alloc_free(). */
+ * sequence of IDs the same on all ranks with the same trees. [count], to be freed with
+ * alloc_free(). */
 int32_t *forest_order(const struct forest *forest);
 
 /* The next patch of root `root` depth first, children in order: start with patch = root,
  * ends with -1. `descend` false skips what is below `patch`. */
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);
 
-/* The leaf after `leaf`, in the same order, of the roots that have an area: start with
+/* The leaf after `leaf`, in the same order, of the roots with an area: start with
  * leaf = -1, ends with -1. */
 int32_t forest_next_leaf(const struct forest *forest, int32_t leaf);
 

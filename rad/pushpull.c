@@ -28,7 +28,7 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
     return irradiance;
 }
 
-/* Gives a leaf its new radiosity and adds what that means to the sums. */
+/* Gives a leaf its new radiosity, and adds its share to the sums. */
 static void update_leaf(const struct model *model, struct flux_unit flux, int32_t leaf,
                            struct push_pull_sums *sums)
 {

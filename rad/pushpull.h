@@ -9,7 +9,7 @@
 #include "rad/model.h"
 
 /* What one push-pull did to this rank's own roots. Powers in units of model.flux_unit,
- * summed over bands, so that ranks can add them. */
+ * summed over bands, to be added by ranks. */
 struct push_pull_sums {
     int64_t light;    /* sum over leaves of A B */
     int64_t absorbed; /* sum over leaves of A (1 - rho) H */
@@ -17,8 +17,8 @@ struct push_pull_sums {
     int64_t change;   /* sum over leaves of A |B - B of the iteration before| */
 };
 
-/* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all above it, each over its
- * area. */
+/* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all patches above, each over
+ * its area. */
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
                            struct flux_unit unit);
 
@@ -48,7 +48,7 @@ struct row_sums {
 };
 
 /* Measures row sums, after a transfer of B = 1 with the unit. Leaves of patches that
- * neither reflect nor emit are left out: they are not linked with each other. */
+ * neither reflect nor emit are left out: no links among these. */
 struct row_sums row_sums_measure(const struct forest *forest, const bool *own,
                                  struct flux_unit unit);
 

@@ -20,7 +20,7 @@ enum phase {
     PHASE_ROWS,      /* part of FINAL_GATHER: the mesh and the rows */
     PHASE_PRODUCTS,  /* part of FINAL_GATHER: a rank's rows times radiosities */
     PHASE_SPOT_CHECKS, /* the error of leaves, measured by paths */
-    PHASE_ROW_SUMS,  /* the row sums that a run reports */
+    PHASE_ROW_SUMS,  /* the row sums reported by a run */
     PHASE_SHADING,   /* part of RENDER: the blend of all leaves, on all ranks */
     PHASE_VIEWPOINT, /* part of RENDER: a place for the camera, on all ranks */
     PHASE_COUNT
@@ -32,27 +32,27 @@ struct spread {
 };
 
 /* A level of refinement on one rank. Work is counted in box and triangle tests; a form
- * factor counts as 12 of them, an exchange of phr's own as 50 or 150. */
+ * factor counts as 12, an exchange of phr's own as 50 or 150. */
 struct level_share {
-    int64_t links;     /* that it split */
+    int64_t links;     /* split by the rank */
     int64_t load;      /* predicted work before links moved */
-    int64_t predicted; /* predicted work of the links that it split */
-    int64_t done;      /* work of splitting them */
+    int64_t predicted; /* predicted work of the split links */
+    int64_t done;      /* work of splitting these */
     int64_t sent;      /* links that left before the level */
-    int64_t received;  /* links that came */
+    int64_t received;  /* links received */
 };
 
 /* A level of refinement, on all ranks. Linking of all pairs, of which nothing is
  * predicted, is level 0 of pass 0. */
 struct level_balance {
     int64_t pass, level;
-    int64_t links; /* that were split; of all pairs, that were made */
+    int64_t links; /* split; of all pairs, made */
     double predicted_max, predicted_mean; /* over ranks */
     double work_max, work_mean;           /* over ranks */
     struct level_share *shares;           /* [ranks] */
 };
 
-/* What ranks do, and in what it is counted. */
+/* Kinds of work of ranks, each with the unit of its count. */
 enum work {
     WORK_LINKING,   /* linking, as above: tests */
     WORK_LOOKS,     /* links looked at between passes */
@@ -66,7 +66,7 @@ enum work {
 
 /* What travels between ranks. */
 enum cargo {
-    CARGO_LINKS, /* that move, in steps 3 and 4 */
+    CARGO_LINKS, /* moving, in steps 3 and 4 */
     CARGO_FLUX,  /* sent in step 5 */
     CARGO_LIGHT, /* got in step 7; new patches, at the end of step 4 */
     CARGO_COUNT
@@ -84,7 +84,7 @@ struct work_sums {
 enum hold {
     HOLD_NONE, HOLD_LEVEL, HOLD_AREA, HOLD_MEMORY, HOLD_ITERATIONS,
     HOLD_RAYS,    /* no leaf can have more */
-    HOLD_EPSILON, /* it is as small as can be, or helps no more */
+    HOLD_EPSILON, /* epsilon is as small as can be, or helps no more */
     HOLD_ROUNDS,  /* the most rounds allowed were made */
     HOLD_DOUBT,   /* paths do not tell the error well enough */
     HOLD_NOTHING  /* no surface reflects light: there is nothing to measure */
@@ -92,23 +92,23 @@ enum hold {
 
 /* The last final gather of all ranks. */
 struct gathered {
-    int64_t rays, segments; /* fired; asked whether they are blocked */
+    int64_t rays, segments; /* fired; tested for blockers */
     int64_t exact;          /* rows made without rays */
     int64_t terms;          /* of all rows, as kept */
     int64_t looks;          /* rays and segments fired before there were rows */
-    int64_t split;          /* leaves that the gathered light was seen to vary over */
-    bool limited;           /* there was no memory to split others */
+    int64_t split;          /* leaves over which the gathered light was seen to vary */
+    bool limited;           /* no memory left to split others */
     int64_t pixels;         /* rays and segments fired for the picture */
-    double closing; /* largest part, of a band, of the light that leaves surfaces of a
-                       closed scene and is lost or made; 0: it is open */
+    double closing; /* largest part, of a band, of the light leaving surfaces of a closed
+                       scene, lost or made; 0: an open scene */
     double error;   /* of the leaves, relative RMS of reflected radiosity */
     double median, worst_tenth; /* by area, of errors of leaves relative to their own
                                      light, 1 at most */
     double by_rays; /* part of the error from the choice of rays */
     double by_mesh; /* part from B varying within leaves; the squares of both parts sum to
-                       that of the error, less the doubt in a measurement */
-    int64_t checked; /* leaves by which the error was measured, 0: it was estimated */
-    int64_t paths;   /* fired for that */
+                       the error's, less the doubt in a measurement */
+    int64_t checked; /* leaves to measure the error by, 0: it was estimated */
+    int64_t paths;   /* fired for the measurement */
 };
 
 struct stats {
@@ -118,25 +118,25 @@ struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
-    int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them */
+    int64_t counted_bytes; /* of links, patches and clusters, as counted by --memory */
     int64_t memory_limit;      /* bytes of links, patches and clusters; 0: none */
     bool memory_limited;       /* linking, refinement or the gather's mesh ended there */
     double epsilon;            /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
     double accuracy;           /* asked for, 0: none was */
-    enum hold hold;            /* what keeps it from being reached */
+    enum hold hold;            /* the limit in the way of the goal */
     int64_t rounds;            /* of --accuracy */
     double emitted_power;  /* W, input units, sum over bands, like the next two */
     double absorbed_power;
     double escaped_power;
-    double touching_power; /* emitted between touching faces, which absorb it */
+    double touching_power; /* emitted and absorbed between touching faces */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
     int64_t links_open;    /* links proved to be open; with the next three, all links */
     int64_t links_seen;    /* links without proof whose segments all arrived */
     int64_t links_partly;  /* links some of whose segments arrived */
     int64_t links_unseen;  /* links none of whose segments arrived */
-    int64_t walled_off;    /* links that ended because a proof says they are blocked */
+    int64_t walled_off;    /* links that ended by a proof of a wall */
     struct gathered gathered;
     int64_t rays_spared;   /* rays not fired, of 16 for each link ever made */
     double row_sum_min, row_sum_mean, row_sum_max; /* row sums R */
