@@ -2,16 +2,16 @@
  *
  * The mean is taken at three points with a rule exact for polynomials of the second
  * degree. Where the other triangle is nearer than the size of this one, the four quarters
- * of this one are taken, and theirs, three times at most: then the points are a sixteenth
- * of its size apart, too far to find light getting out of a narrower gap. So across a gap
- * the factor is the exact one of both triangles. */
+ * of this one are taken, and theirs: then the points are an eighth of its size apart, too
+ * far to find light getting out of a narrower gap. So across a gap the factor is the
+ * exact one of both triangles. */
 #include "rad/beyond/gather/factor.h"
 
 #include "geom/contour.h"
 #include "geom/lambert.h"
 #include "rad/model.h"
 
-enum { QUARTERINGS = 3 };
+enum { QUARTERINGS = 2 };
 
 /* Tests taking about as long as the exact factor of two triangles. */
 enum { TESTS_PER_EXACT_FACTOR = 400 };

@@ -7,8 +7,8 @@
 #include "tests/tap.h"
 
 /* Against the contour integral over both triangles: three points, or as many on quarters
- * of quarters where that is near, have to be right within 0.2 %; out of a gap, where they
- * would find nothing, it is the contour integral itself. */
+ * of quarters where that is near, have to be right within 0.25 %; out of a gap, where
+ * they would find nothing, it is the contour integral itself. */
 static void test_mean_factor(void)
 {
     static const double heights[] = {0.0, 0.1, 1.0, 3.0};
@@ -20,7 +20,7 @@ static void test_mean_factor(void)
         struct triangle wall = {{{0, 0, h}, {0, 1, h}, {0, 0, 1 + h}}};
         double exact = triangle_exchange(&floor, &wall) / triangle_area(&floor);
         double off = mean_factor(&floor, plane.normal, &wall, &work) / exact - 1.0;
-        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e",
+        tap_ok(fabs(off) <= 2.5e-3, "a wall %g above the floor: factor %.5f, off by %.1e",
                h, exact, off);
     }
     struct triangle beside = {{{1, 0, 0.002}, {0, 1, 0.002}, {1, 1, 0.002}}};
