@@ -4,27 +4,26 @@
  * sticks out, and the box of a cell is the box of its triangles. So each triangle is
  * recorded once, nothing can fall between two cells, and the memory is known beforehand.
  *
- * The eight parts of a cell are not cubes. With the chance p_i that a line which meets a
- * box meets that of part i, the ratio of the boxes' areas, a cell that is cut costs sum
- * p_i n_i triangle tests, one that is not n. As long as there are fewer than eight parts,
- * the one with the largest box is cut in two, across the axis and at the place where that
- * sum is least. Cells are split as long as that saves more than the NODE_COST of looking
- * at eight boxes. The parts then take the octant in whose direction they lie, the
- * farthest out first: a ray goes through octants from the nearest to the farthest. The
- * queue of cells replaces recursion. Triangles whose boxes have one middle are cut by
- * number.
+ * The eight parts of a cell are not cubes. A line through the cell's box meets the box of
+ * part i with the chance p_i, the ratio of the boxes' areas: a cut cell costs sum p_i n_i
+ * triangle tests, an uncut one n. As long as there are fewer than eight parts, the one
+ * with the largest box is cut in two, across the axis and at the place of the least sum.
+ * Cells are split as long as the saving exceeds the NODE_COST of looking at eight boxes.
+ * Each part then takes the octant in its direction, the farthest out first: a ray goes
+ * through octants from the nearest to the farthest. The queue of cells replaces
+ * recursion. Triangles whose boxes have one middle are cut by number.
  *
  * Rejected (tests/bench/hits.c, rooms of 6,348 and 31,936 triangles): across z, the
  * halves across y and the quarters across x, each at its best place, cells have 5.9 parts
- * and not 7, and first hits look at 10.9 and 15.0 nodes and 7.1 and 7.9 triangles; so
- * they look at 7.7 and 9.3 nodes and at 5.2 and 6.5 triangles. Cutting the part with most
+ * and not 7, and first hits look at 10.9 and 15.0 nodes and 7.1 and 7.9 triangles,
+ * instead of 7.7 and 9.3 nodes and 5.2 and 6.5 triangles. Cutting the part with most
  * triangles times area, or sorting children by distance for each ray, saves nothing more.
  *
  * A record holds the triangle's affine maps in float, with a bound on their error: for
  * |x| <= 1 each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| +
  * |r3|, there are seven of them, and coefficients and coordinates themselves are rounded:
- * 10 x 2^-24 r1 in all. The record says 16 x 2^-24 r1. Queries decide in float only where
- * a value is beyond that. */
+ * 10 x 2^-24 r1 in all. The record says 16 x 2^-24 r1. Queries decide in float only
+ * beyond this bound. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -53,10 +52,10 @@ struct item {
 struct part {
     int32_t begin, end;
     struct box box;
-    bool is_whole; /* it cannot be cut */
+    bool is_whole; /* cannot be cut */
 };
 
-/* A cell that waits to be split or made a leaf. */
+/* A cell waiting to be split or made a leaf. */
 struct cell {
     struct part part;
     int32_t depth;
@@ -96,7 +95,7 @@ static float box_middle(const struct box *box, int axis)
     return box->low[axis] + box->high[axis];
 }
 
-/* The greatest float that is not above x, or a few before it. */
+/* The greatest float not above x, or a few before it. */
 static float round_down(double x)
 {
     return (float)(x - fabs(x) * 1.2e-7 - 1e-30);
@@ -147,7 +146,7 @@ static float bin_cost(const struct bin *bin)
     return bin->count > 0 ? (float)bin->count * box_area(&bin->box) : 0.0f;
 }
 
-/* Looks for a cut along the axis of `trial` that is better than the best so far. */
+/* Looks for a cut along the axis of `trial` better than the best so far. */
 static void improve_cutting(struct cutting *best, struct cutting trial,
                             const struct item *items, int32_t count)
 {
@@ -207,7 +206,7 @@ static struct part part_of(const struct builder *builder, int32_t begin, int32_t
 }
 
 /* Cuts a part, keeping the order within both; the second becomes `rest`. Returns false,
- * and marks the part, if it cannot be cut. */
+ * and marks the part, if no cut is possible. */
 static bool cut_part(struct builder *builder, struct part *part, struct part *rest)
 {
     struct item *items = builder->items;
@@ -227,7 +226,7 @@ static bool cut_part(struct builder *builder, struct part *part, struct part *re
     return true;
 }
 
-/* The part with the largest box that may be cut, or -1. */
+/* Of the parts left to cut the one with the largest box, or -1. */
 static int largest_part(const struct part *parts, int count)
 {
     int largest = -1;
@@ -301,8 +300,8 @@ static void append_cell(struct builder *builder, struct cell cell)
     builder->queue[builder->queue_count++] = cell;
 }
 
-/* Which octant each part takes: of all pairs that are left always the one in which the
- * part lies farthest out. */
+/* Which octant each part takes: of all pairs left always the one with the part farthest
+ * out. */
 static void assign_octants(const struct part *whole, const struct part *parts, int count,
                            int octants[LANES])
 {
@@ -331,7 +330,7 @@ static void assign_octants(const struct part *whole, const struct part *parts, i
     }
 }
 
-/* Hangs a new node below the cell's place and its parts below that. */
+/* Hangs a new node below the cell's place, and the parts below the node. */
 static int32_t split_cell(struct builder *builder, const struct cell *cell,
                           const struct part *parts, int count)
 {
@@ -402,7 +401,7 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
         return *tree;
     if (count > INT32_MAX / LEAF_MAX)
         alloc_fail((size_t)count *
-                   sizeof(struct record)); /* no child could say where it is */
+                   sizeof(struct record)); /* no child could tell a record's place */
     builder.items = alloc_array((size_t)count, sizeof *builder.items);
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
     for (int32_t i = 0; i < count; i++)

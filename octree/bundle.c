@@ -9,19 +9,19 @@
  * All of this is float, and every comparison keeps a margin for its rounding. With errors
  * eu, ev and ew of the maps, u |w'| + u' |w| is off by at most eu (|w| + |w'|) + ew (|u|
  * + |u'|), and v likewise: a part for either point, so margins are computed for eight
- * points and added for 16 pairs. A pair for which the signs are not certain, near an edge
- * or where an end point lies in the plane, is decided by segment_is_blocked_by() in
- * double. So float decides nothing that double would decide otherwise, and the answers
- * are the watertight ones of geom/triangle.c to the bit.
+ * points and added for 16 pairs. A pair of uncertain signs, near an edge or where an end
+ * point lies in the plane, is decided by segment_is_blocked_by() in double. So float
+ * decides nothing otherwise than double would, and the answers are the watertight ones of
+ * geom/triangle.c to the bit.
  *
  * Made faster, most of all first (tests/bench/rays.c, beside Embree's packets of 16): a
- * link starts with the last blocker of the one that it comes from; tests inlined, masks
- * folded in whole words; the six slabs of a node written out instead of looped over; one
- * fold of masks for a triangle; numbers of the shaft spread over the lanes once, not for
- * each node. Eight-lane vectors where registers have four lanes had 0.4 of the speed of
- * twice four. Nothing was gained by a look at the eight points first (three in four
- * triangles pass it), by remembering two to six blockers instead of one, by smaller
- * leaves, and by fetching the next node ahead. */
+ * link starts with the last blocker of its parent; tests inlined, masks folded in whole
+ * words; the six slabs of a node written out instead of looped over; one fold of masks
+ * for a triangle; numbers of the shaft spread over the lanes once, not for each node.
+ * Eight-lane vectors where registers have four lanes had 0.4 of the speed of twice four.
+ * Nothing was gained by a look at the eight points first (three in four triangles pass),
+ * by remembering two to six blockers instead of one, by smaller leaves, and by fetching
+ * the next node ahead. */
 #include "octree/octree.h"
 #include "octree/shaft.h"
 
@@ -38,13 +38,12 @@ struct relation {
     lanes u, v;
     lanes w;      /* distance to the plane; 0 where its sign is not certain */
     lanes size;   /* of the distance */
-    lanes margin; /* the point's part of that of u, v and their third */
+    lanes margin; /* the point's part of the margin of u, v and their third */
 };
 
 /* Eight pairs whose points are on opposite sides: with the sizes of the distances, the
- * crossing point has u = (u0 w1 + u1 w0) / (w0 + w1), and likewise v; it is inside if
- * both and their third are positive. Adds the bits of hits and misses that are
- * certain. */
+ * crossing point has u = (u0 w1 + u1 w0) / (w0 + w1), and likewise v; the point is inside
+ * if both and their third are positive. Adds the bits of certain hits and misses. */
 INLINE void judge_half(const struct relation *p, const struct relation *q,
                        const lanes_mask bits[2], lanes_mask *verdict)
 {
@@ -99,7 +98,7 @@ INLINE unsigned judge(const struct record *r, const struct shaft *shaft)
     return mask_select(&verdict, &all);
 }
 
-/* The pairs among `wanted` that the triangle blocks. */
+/* The pairs among `wanted` blocked by the triangle. */
 INLINE unsigned pairs_blocked(const struct octree *octree, const struct bundle *bundle,
                               const struct shaft *shaft, const struct record *r,
                               unsigned wanted)
@@ -123,7 +122,7 @@ struct bundle_search {
     const struct bundle *bundle;
     struct shaft shaft;
     unsigned blocked; /* segments known to be blocked, as bits */
-    int32_t *guess;   /* the last triangle that blocked some */
+    int32_t *guess;   /* the last triangle blocking some */
 };
 
 /* Visits a leaf, until all segments asked about are blocked. */

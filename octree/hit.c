@@ -1,31 +1,31 @@
 /* First hits: one ray goes down the tree, to the nearest box first (octree/ray.h), or
  * hundreds at a time.
  *
- * The ray is cut to a segment that leaves the scene. The t at which it enters a box lets
- * boxes be passed over that are behind the hit, also those that were met before there was
- * one. Where it crosses a triangle's plane is known in double, so that the triangle which
- * the ray leaves, and those that tie, cost no more than others; float is sure of the
- * inside of a triangle, but for edges, where segment_line_meets() decides. So the answers
- * are those of geom/triangle.c to the bit.
+ * The ray is cut to a segment leaving the scene. By the t of entry, boxes behind the hit
+ * are passed over, also those met before there was a hit. The point where the ray crosses
+ * a triangle's plane is known in double, so the triangle left by the ray, and triangles
+ * in a tie, cost no more than others; float is sure of the inside of a triangle, but for
+ * edges, where segment_line_meets() decides. So the answers are those of geom/triangle.c
+ * to the bit.
  *
  * Two fifths of a ray's time are wrong guesses of the processor, ten a ray. A stream of
- * rays takes loops instead of branches: all rays of a stream that meet a node look at its
- * boxes, and then each child has the list of those that meet it, which takes one
- * subtraction a ray and child. Each ray sees leaves in the order in which it would alone,
- * so its answer is the same; it looks at a few more nodes, for it is on the list of a
- * child before its hit is known. 256 rays from one leaf take 0.65 of the time that they
- * take one by one, in rooms of 6,348 and 31,936 triangles; others gain little.
+ * rays takes loops instead of branches: all rays of a stream in a node look at the boxes
+ * of the node, and then each child has the list of its rays, which takes one subtraction
+ * a ray and child. Each ray sees leaves in the same order as alone, so its answer is the
+ * same; a few more nodes are looked at, for the ray is on the list of a child before its
+ * hit is known. 256 rays from one leaf take 0.65 of the time taken one by one, in rooms
+ * of 6,348 and 31,936 triangles; others gain little.
  *
  * Rejected: planes in float, and doubtful ones in double (each ray is in doubt about the
- * triangle that it leaves); eight children pushed without branches; an entry of the stack
- * for each child; sixteen rays in turn, a node of each at a time; fetching ahead of time;
+ * triangle it leaves); eight children pushed without branches; an entry of the stack for
+ * each child; sixteen rays in turn, a node of each at a time; fetching ahead of time;
  * records and nodes at multiples of 64 bytes; one tree for all, whose large walls get in
  * the way of the furniture; in streams, lists filled child by child for each ray, two
  * passes over the triangles of a leaf. */
 #include "octree/octree.h"
 #include "octree/ray.h"
 
-/* A first hit that is looked for. */
+/* A search for a first hit. */
 struct search {
     const struct octree *octree;
     struct ray ray;
@@ -37,7 +37,7 @@ struct search {
 static const float REACH_MARGIN = 1e-6f; /* more than ties, and than rounding of t */
 
 /* Of two triangles met in the same place, a front counts before a back (the wall of the
- * next room lies back to back with ours), then the one that comes later in the file. */
+ * next room lies back to back with ours), then the one later in the file. */
 static bool wins_tie(const struct search *search, int32_t t, bool front)
 {
     return front != search->front ? front : t > search->triangle;
@@ -49,8 +49,8 @@ static bool line_meets(const struct search *search, int32_t t)
     return segment_line_meets(&line, &search->octree->triangles[t], NULL);
 }
 
-/* Tests one triangle; it counts if it is met before the hit so far, or in the same place
- * and wins the tie. */
+/* Tests one triangle. A hit counts before the hit so far, or in the same place if the
+ * triangle wins the tie. */
 INLINE void improve_hit(struct search *search, const struct record *r)
 {
     struct ends ends = ends_of(&search->ray, r);
@@ -81,7 +81,7 @@ INLINE bool search_leaf(void *at, const struct record *records, int32_t count,
     return false;
 }
 
-/* Begins the search of a ray. Returns false if it misses the scene. */
+/* Begins the search of a ray. Returns false if the ray misses the scene. */
 INLINE bool begin_search(struct search *search, const struct octree *octree,
                          struct vec3 origin, struct vec3 direction, bool fronts_only)
 {
@@ -136,7 +136,7 @@ struct group {
 static void group_walk(const struct group *group, int32_t child, const uint8_t *rays,
                        int count);
 
-/* Goes down to the children of a node, to each with those rays that meet its box. */
+/* Goes down to the children of a node, to each with the rays meeting its box. */
 static void group_split(const struct group *group, const struct node *node,
                         const uint8_t *rays, int count)
 {

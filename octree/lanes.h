@@ -1,9 +1,9 @@
 /* Eight floats at once.
  *
  * The operations are defined by the plain C99 loops at the end. Where the compiler has
- * vector types (gcc, clang and their kin) the same is said with them, for processors with
- * eight floats in a register (AVX2) and for all others with twice four. Every lane is
- * rounded as in the loops, so all three give the same bits. The first uses macros where a
+ * vector types (gcc, clang and their kin) vectors say the same, for processors with eight
+ * floats in a register (AVX2) and for all others with twice four. Every lane is rounded
+ * as in the loops, so all three give the same bits. The first uses macros where a
  * function would take or return a vector, since that has another calling convention with
  * every set of processor flags.
  *
@@ -36,9 +36,9 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1: true, 0: fal
 #define lanes_abs(a) ((lanes)((lanes_mask)(a) & INT32_C(0x7fffffff)))
 #define lanes_above(a, b) ((lanes_mask)((a) > (b)))
 #define lanes_upto(a, b) ((lanes_mask)((a) <= (b)))
-/* The greater of a and b; b where one is not a number. This is the one instruction that
- * there is for it: a loop over the lanes becomes that at -O2, but 48 at -O3, and masks
- * wait where AVX-512 keeps them apart (gcc 12). */
+/* The greater of a and b; b where one is not a number. A loop over the lanes becomes this
+ * one instruction at -O2, but 48 at -O3, and masks wait where AVX-512 keeps masks apart
+ * (gcc 12). */
 #define lanes_max(a, b) __builtin_ia32_maxps256((a), (b))
 #define lanes_min(a, b) __builtin_ia32_minps256((a), (b))
 #define mask_and(a, b) ((a) & (b))
@@ -49,7 +49,7 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1: true, 0: fal
 /* a where the mask is false, else 0 */
 #define lanes_unless(mask, a) ((lanes)(~(mask) & (lanes_mask)(a)))
 
-/* Eight floats at any address, read as one vector (by parts, it would wait for the
+/* Eight floats at any address, read as one vector (reading by parts would wait for the
  * store). */
 typedef float lanes_in_memory __attribute__((vector_size(32), aligned(4), may_alias));
 #define lanes_at(p) ((lanes)*(const lanes_in_memory *)(p))
@@ -137,8 +137,7 @@ FOUR_INLINE lanes_mask lanes_upto(lanes a, lanes b)
     return (lanes_mask){(four_mask)(a.low <= b.low), (four_mask)(a.high <= b.high)};
 }
 
-/* The one instruction that there is for it, where it has a name; compilers find it for
- * neither. */
+/* The one instruction for this, where it has a name; compilers find it for neither. */
 #ifdef __SSE__
 #define four_max(a, b) __builtin_ia32_maxps((a), (b))
 #define four_min(a, b) __builtin_ia32_minps((a), (b))
@@ -411,7 +410,7 @@ static inline void mask_set_weights(lanes_mask *weights, int flip)
     memcpy(weights, weight[flip], sizeof *weights);
 }
 
-/* Number of bits that are set in the lowest 16. */
+/* Number of bits set in the lowest 16. */
 static inline int bit_count(unsigned bits)
 {
     bits = (bits & 0x5555u) + (bits >> 1 & 0x5555u);
@@ -420,7 +419,7 @@ static inline int bit_count(unsigned bits)
     return (int)((bits & 0xffu) + (bits >> 8));
 }
 
-/* Number of the lowest bit that is set. Pre: there is one. */
+/* Number of the lowest bit set. Pre: there is one. */
 static inline int lowest_bit(unsigned bits)
 {
 #ifdef __GNUC__

@@ -1,4 +1,4 @@
-/* The octree: a tree of boxes, eight to a node, cut where that saves most.
+/* The octree: a tree of boxes, eight to a node, cut where cuts save most.
  *
  *     cell (space)          stored for it
  *     +-----+-----+         node: eight boxes side by side, each the box of all
@@ -7,10 +7,10 @@
  *     |   \ | /\  |         record: a triangle's plane, two affine maps in float
  *     +-----+-----+
  *
- * It is an octree by its fan-out and by the place of its children: each takes the octant
- * in whose direction it lies, so that the order in which a ray meets them depends on its
- * signs alone. The boxes are no cubes: a cell is cut where that makes a query cheapest
- * (octree/build.c). Eight boxes fill one vector of lanes (octree/lanes.h), so that a node
+ * The tree is an octree by its fan-out and by the place of its children: each takes the
+ * octant in its direction, so the order in which a ray meets children depends on the
+ * ray's signs alone. The boxes are no cubes: a cell is cut where queries become cheapest
+ * (octree/build.c). Eight boxes fill one vector of lanes (octree/lanes.h), so a node
  * costs about as much as one box.
  *
  * One walk (octree/walk.h) answers all questions. Rays go down for first hits
@@ -19,9 +19,9 @@
  * (octree/bundle.c) and for empty shafts (octree/shaft.c); a half space for the hull,
  * below.
  *
- * Triangles that have the whole scene on one side, the walls of a room, can block nothing
- * between two of its points. They are the hull: a tree of their own that only first hits
- * look at. */
+ * Triangles with the whole scene on one side, the walls of a room, can block nothing
+ * between two of its points. These are the hull, a tree of their own for first hits
+ * only. */
 #include "octree/octree.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@
 struct above {
     struct plane plane;
     const struct triangle *triangles;
-    struct vec3 corner; /* the last that was looked at */
+    struct vec3 corner; /* the last one looked at */
     double highest;     /* distance of the highest corner so far */
 };
 
@@ -81,7 +81,7 @@ INLINE bool find_corner(void *at, const struct record *records, int32_t count,
 
 enum { ROOFS_MAX = 16 };
 
-/* A plane that no corner of the scene is higher above than `most`. */
+/* A plane with all corners of the scene at most `most` above. */
 struct roof {
     struct plane plane;
     double most;
@@ -92,12 +92,12 @@ struct roofs {
     const struct tree *all;
     const struct triangle *triangles;
     double reach;          /* no corner is farther from the origin */
-    struct vec3 corner;    /* the last that was found above a plane */
+    struct vec3 corner;    /* the last one found above a plane */
     struct roof last[ROOFS_MAX];
-    int64_t count;         /* of all roofs that were found; the last ones are kept */
+    int64_t count;         /* of all roofs found; the last ones are kept */
 };
 
-/* True if a roof so much alike is known that nothing is above this plane either. */
+/* True if a known roof is so much alike that nothing is above this plane either. */
 static bool is_under_roof(const struct roofs *roofs, const struct plane *plane)
 {
     for (int64_t i = 0; i < roofs->count && i < ROOFS_MAX; i++) {

@@ -1,9 +1,10 @@
 /* Packets: first hits of up to 64 rays from one point, such as those of a few pixels.
  *
- * A packet goes down the tree as a whole. For eight boxes at once it takes the earliest
- * entry and the latest exit that any of its rays could have (interval arithmetic), so a
- * node costs the tests of two rays for all 64. Rays whose directions have the same signs
- * meet the children in one order, and boxes behind the hits of all rays are passed over.
+ * A packet goes down the tree as a whole. Eight boxes at once are tested with the
+ * earliest entry and the latest exit possible for any of the rays (interval arithmetic),
+ * so a node costs the tests of two rays for all 64. Rays whose directions have the same
+ * signs meet the children in one order, and boxes behind the hits of all rays are passed
+ * over.
  *
  * A triangle and the eye span a cone. Three linear forms of a ray's direction d say
  * whether the ray is inside: ((a - eye) x (b - eye)) . d for each edge ab. A fourth is
@@ -15,10 +16,10 @@
  *
  * Float decides where a ray is inside of the cone by more than the margin, and nearer
  * than all others by more than theirs; a third triangle in front of two settles which of
- * those is nearer. Rays that stay in doubt, about one in a thousand, and packets whose
- * directions differ in sign, go down one by one (octree/hit.c). The point on the triangle
- * is computed in double, as there. So the answers are the same to the bit, and do not
- * depend on which rays form a packet. */
+ * those is nearer. Rays in doubt, about one in a thousand, and packets whose directions
+ * differ in sign, go down one by one (octree/hit.c). The point on the triangle is
+ * computed in double, as there. So the answers are the same to the bit, and do not depend
+ * on which rays form a packet. */
 #include "octree/octree.h"
 #include "octree/ray.h"
 
@@ -38,13 +39,13 @@ struct packet {
     struct vec3 eye;
     bool fronts_only;
     lanes direction[GROUPS][3];   /* of length 1 */
-    lanes low[GROUPS];            /* least nearness that the hit so far can have */
-    lanes high[GROUPS];           /* most nearness that a triangle so far can have */
+    lanes low[GROUPS];            /* least possible nearness of the hit so far */
+    lanes high[GROUPS];           /* most possible nearness of a triangle so far */
     lanes_mask triangle[GROUPS];  /* the hit so far; NONE or DOUBT */
     float least[3], most[3];      /* of the directions */
     lanes start[3];               /* the eye */
     lanes slow[3], fast[3];       /* least and largest |1 / direction|, with its sign */
-    lanes_mask weights;           /* of the children: that of octant k ^ near is bit k */
+    lanes_mask weights;           /* of the children: bit k for octant k ^ near */
     int near;                     /* the nearest octant, as in struct ray */
     float farthest;               /* the least of `low` */
     float reach;                  /* length up to which boxes are of use */
@@ -96,7 +97,7 @@ static double size_of(struct vec3 x)
     return fabs(x.x) + fabs(x.y) + fabs(x.z);
 }
 
-/* Pre: `distance` is that of the eye to the plane. */
+/* Pre: `distance` is from the eye to the plane. */
 static void set_cone(struct cone *cone, const struct packet *packet,
                      const struct record *r, double distance)
 {
@@ -168,7 +169,7 @@ static void improve_hits(struct packet *packet, const struct cone *cone, int32_t
     }
 }
 
-/* Passes over all that is behind the hit of every ray. */
+/* Passes over all boxes behind the hit of every ray. */
 static void shorten_reach(struct packet *packet)
 {
     float low[LANES];
@@ -227,8 +228,8 @@ static bool set_bounds(struct packet *packet, float direction[3][PACKET_RAYS])
     return true;
 }
 
-/* Sets the rays; the last one fills the places left over. Returns false if they go down
- * one by one. */
+/* Sets the rays; the last one fills the places left over. Returns false if the rays go
+ * down one by one. */
 static bool set_packet(struct packet *packet, const struct vec3 *directions, int count)
 {
     float direction[3][PACKET_RAYS];
@@ -256,7 +257,7 @@ void octree_first_hits(const struct octree *octree, struct vec3 origin,
                        const struct vec3 *directions, int count, bool fronts_only,
                        struct octree_hit *hits, struct octree_counts *counts)
 {
-    struct packet packet; /* set by parts, since it is large */
+    struct packet packet; /* set by parts, since large */
     int32_t triangles[PACKET_RAYS];
     packet.octree = octree;
     packet.eye = origin;

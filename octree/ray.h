@@ -1,18 +1,17 @@
 /* One ray on its way down a tree; for octree/ only.
  *
- * A ray is the segment x = origin + t step, 0 <= t <= 1. It enters a box at the largest
- * of the three t at which it enters the box's slabs, and leaves it at the smallest at
- * which it leaves them. Which side of a slab comes first depends on the ray alone. Boxes
- * are BOX_MARGIN wider than their triangles, and that is more than all rounding in these
- * tests.
+ * A ray is the segment x = origin + t step, 0 <= t <= 1. The ray enters a box at the
+ * largest of the three t of entry into the box's slabs, and leaves at the smallest t of
+ * exit. Which side of a slab comes first depends on the ray alone. Boxes are BOX_MARGIN
+ * wider than their triangles, more than all rounding in these tests.
  *
- * Where a ray crosses a triangle's plane is computed in double, as geom/triangle.c does
- * it. Whether that point is inside of the triangle is looked at in float. Of at most 2.5
- * that is in a step the point loses 20 x 2^-24 in float, and 2 x 2^-24 in double where
- * the ray's ends differ by at least CHANGE_LEAST in distance from the plane. A map of
- * error e has a gradient below 2^20 e (octree/build.c): that makes 1.4 e, and with the
- * map's own error 2.5 e. Queries decide in double the points nearer to an edge, and rays
- * that graze the plane. */
+ * The point where a ray crosses a triangle's plane is computed in double, as in
+ * geom/triangle.c. Float decides whether this point is inside of the triangle. Of a step
+ * of at most 2.5 the point loses 20 x 2^-24 in float, and 2 x 2^-24 in double where the
+ * ray's ends differ by at least CHANGE_LEAST in distance from the plane. A map of error e
+ * has a gradient below 2^20 e (octree/build.c): 1.4 e, and with the map's own error 2.5
+ * e. Queries decide in double the points nearer to an edge, and rays that graze the
+ * plane. */
 #ifndef OCTREE_RAY_H
 #define OCTREE_RAY_H
 
@@ -25,14 +24,14 @@ struct ray {
     float origin[3], step[3];
     float inverse[3]; /* 1 / step; of a step below STEP_LEAST, 1 / STEP_LEAST */
     float reach;      /* t up to which boxes are of use */
-    int near;         /* the nearest octant: bits of the axes that the ray runs down */
+    int near;         /* the nearest octant: bits of the axes the ray runs down */
 };
 
 static const float STEP_LEAST = 1e-12f;
 static const double CHANGE_LEAST = 1e-8;
 
-/* One axis after the other, without a loop: a choice of components by number is a branch
- * that costs more than the arithmetic. */
+/* One axis after the other, without a loop: a choice of components by number is a branch,
+ * costlier than the arithmetic. */
 INLINE void ray_set_axis(struct ray *ray, int axis, double from, double to)
 {
     float a = (float)from, step = (float)to - a, size = fabsf(step);
@@ -54,8 +53,9 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     ray_set_axis(ray, 2, from.z, to.z);
 }
 
-/* Cuts the ray to a segment that ends behind the scene and begins no further from it than
- * its own size, so that a camera far away keeps its digits. False if it misses. */
+/* Cuts the ray to a segment ending behind the scene and beginning no further from the
+ * scene than its own size, so that a camera far away keeps its digits. False if the ray
+ * misses. */
 INLINE bool ray_clip(const struct octree *octree, struct vec3 *origin,
                      struct vec3 direction, struct vec3 *end)
 {
@@ -80,7 +80,7 @@ INLINE bool ray_clip(const struct octree *octree, struct vec3 *origin,
               lanes_sub(lanes_at(node->bound[axis][side]), lanes_all(ray->origin[axis])))
 
 /* Says which children's boxes the ray, whose nearest octant is `near`, may meet within
- * its reach, and where it enters them. */
+ * its reach, and where each is entered. */
 INLINE void ray_boxes(const struct ray *ray, int near, const struct node *node,
                       lanes_mask *met, lanes *enter)
 {
@@ -109,8 +109,8 @@ INLINE unsigned ray_enters(const void *beam, const struct node *node, float ente
     return mask_select(&met, &weights);
 }
 
-/* Goes down along the ray, to the nearest box first. Visits may shorten `*reach`, which
- * is that of the ray; NULL: they do not. */
+/* Goes down along the ray, to the nearest box first. Visits may shorten `*reach`, the
+ * ray's; NULL: visits do not. */
 INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, const float *reach,
                      leaf_visit *visit, void *query, struct octree_counts *counts)
 {

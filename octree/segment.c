@@ -1,10 +1,10 @@
 /* One segment: is it blocked, and is there a wall?
  *
- * A segment goes down like a ray (octree/ray.h), to the nearest box first, and any
- * triangle that blocks it ends the walk. Float counts where it is sure; all else is
- * decided by segment_is_blocked_by() in double, so the answers are those of
- * geom/triangle.c to the bit. Links of clusters ask for few segments each, to places far
- * apart, and are better off so than with bundles.
+ * A segment goes down like a ray (octree/ray.h), to the nearest box first, and the first
+ * blocker ends the walk. Float counts where sure; all else is decided by
+ * segment_is_blocked_by() in double, so the answers are those of geom/triangle.c to the
+ * bit. Links of clusters ask for few segments each, to places far apart, and are better
+ * off so than with bundles.
  *
  * Rejected: a shaft without width (octree/shaft.h), whose separating axes take twice as
  * many operations a box; a walk without branches (8 % slower: a right guess spares the

@@ -78,7 +78,7 @@ struct shaft_query {
     const struct triangle *triangles;
     const int32_t *own; /* [2] */
     struct hull hull;
-    int32_t *entrants;  /* [most] triangles that reach into the hull */
+    int32_t *entrants;  /* [most] triangles reaching into the hull */
     int32_t most, count;
 };
 

@@ -21,11 +21,11 @@ struct shaft {
     struct slab own[3];   /* n = x, y, z */
     struct slab cross[3]; /* n = direction x (x, y, z axis) */
     lanes direction[3];   /* from the mean start to the mean end, largest |.| 1 */
-    lanes_mask weights;   /* of the children: that of octant k ^ near is bit k */
-    int near;             /* the nearest octant: bits of the axes that it runs down */
+    lanes_mask weights;   /* of the children: bit k for octant k ^ near */
+    int near;             /* the nearest octant: bits of the axes it runs down */
 };
 
-/* Sets the points. A walk needs the slabs around them, too. */
+/* Sets the points. A walk needs their slabs, too. */
 void shaft_set_points(struct shaft *shaft, const struct vec3 from[SHAFT_ENDS],
                       const struct vec3 to[SHAFT_ENDS]);
 void shaft_set_slabs(struct shaft *shaft);

@@ -15,8 +15,8 @@ enum {
     TREE_LEVELS = 36 /* a number below 2^31 is at most LEAF_MAX after 9 cuts in eight */
 };
 
-/* For small functions that are called millions of times from a few places each, where a
- * compiler's own judgement is not to inline them. */
+/* For small functions called millions of times from a few places each, where a compiler's
+ * own judgement is against inlining. */
 #ifdef __GNUC__
 #define INLINE static inline __attribute__((always_inline))
 #else
@@ -29,9 +29,9 @@ enum {
 static const float BOX_MARGIN = 2e-6f;
 
 /* An inner node: the boxes of its eight children side by side, so that one instruction
- * looks at all of them. That of an absent child is far away and inside out, so that
- * nothing meets it. Children are in the order of the octants, bit k of which is the side
- * along axis k. */
+ * looks at all eight. The box of an absent child is far away and inside out, so nothing
+ * meets it. Children are in the order of the octants, bit k of which is the side along
+ * axis k. */
 struct node {
     float bound[3][2][LANES]; /* per axis, the low and the high side */
     int32_t child[LANES]; /* an inner node if >= 0; a leaf if < 0, see leaf_of() */
@@ -42,7 +42,7 @@ struct leaf {
     int32_t first, count; /* 1 <= count <= LEAF_MAX */
 };
 
-/* The leaf that a negative child stands for: ~(LEAF_MAX * first + count - 1). */
+/* The leaf of a negative child: ~(LEAF_MAX * first + count - 1). */
 static inline struct leaf leaf_of(int32_t child)
 {
     return (struct leaf){~child / LEAF_MAX, ~child % LEAF_MAX + 1};
@@ -51,7 +51,7 @@ static inline struct leaf leaf_of(int32_t child)
 /* A triangle as its plane and two affine maps r(x) = r[0] x + r[1] y + r[2] z + r[3]: the
  * barycentric coordinates of corners b and c. 80 bytes. */
 struct record {
-    struct plane plane; /* as the triangle has it */
+    struct plane plane; /* of the triangle */
     float u[4], v[4];
     float error_u, error_v; /* bounds on |r(x) - its exact value| for |x| <= 1 */
     float error_w;          /* such a bound for the distance to the plane as a map */
@@ -74,8 +74,8 @@ struct tree {
 struct octree {
     const struct triangle *triangles;
     const struct plane *planes;
-    struct tree inside; /* triangles that can block a segment between two scene points */
-    struct tree hull;   /* triangles that have the whole scene on one side */
+    struct tree inside; /* triangles able to block a segment between two scene points */
+    struct tree hull;   /* triangles with the whole scene on one side */
     int32_t *place;      /* [count] where a triangle's record is in `inside`, or -1 */
     int32_t *neighbours; /* [3 count] of the triangles in their walls, or -1 */
     int64_t count;

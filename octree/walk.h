@@ -1,9 +1,9 @@
-/* The walk down a tree that answers every question; for octree/ only.
+/* The walk down a tree, for every question; for octree/ only.
  *
  * A question goes down to the nearest child of a node as long as there is one, looks at
- * the triangles of the leaf, and goes on with the children that wait. Which children are
- * met, and which triangles end the walk, the question says by two functions, inlined
- * where it is asked. */
+ * the triangles of the leaf, and goes on with the waiting children. Two functions of the
+ * question, inlined at its place, say which children are met and which triangles end the
+ * walk. */
 #ifndef OCTREE_WALK_H
 #define OCTREE_WALK_H
 
@@ -19,8 +19,8 @@ struct waiting {
     float enter[LANES]; /* where a ray enters each child's box, by octant */
 };
 
-/* Returns the children of a node that are met, the one in octant k ^ near as bit k. If
- * `enter` is not NULL, it also says for each octant how far away its box is. */
+/* Returns the children met in a node, the one in octant k ^ near as bit k. Sets `enter`,
+ * unless NULL, to the distance of each octant's box. */
 typedef unsigned node_enter(const void *beam, const struct node *node,
                             float enter[LANES]);
 
@@ -45,9 +45,9 @@ INLINE bool take_next(struct waiting *stack, int *height, int near, const float 
     return false;
 }
 
-/* Asks `query` of the leaves that `beam` meets, the child in octant `near` first.
- * `*reach` is how far away boxes are still of use, and visits may shorten it; NULL: all
- * are. Returns true if a visit did. */
+/* Asks `query` of the leaves met by `beam`, the child in octant `near` first. `*reach` is
+ * how far away boxes are still of use, and visits may shorten this; NULL: all are.
+ * Returns true if a visit ends the walk. */
 INLINE bool tree_walk(const struct tree *tree, node_enter *enter, const void *beam,
                       int near, const float *reach, leaf_visit *visit, void *query,
                       struct octree_counts *counts)
