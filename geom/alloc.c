@@ -1,8 +1,8 @@
 /* Counted allocation.
  *
  * The count is of blocks, not bytes: C99 offers no portable way to ask a block for its
- * size, and a header in front of each block would cost memory to learn facts that a leak
- * checker tells better once the balance shows that something leaks. */
+ * size, and a header in front of each block would cost memory for facts better learnt
+ * from a leak checker, once the balance shows a leak. */
 #include "geom/alloc.h"
 
 #include <stdio.h>

@@ -1,28 +1,28 @@
-/* Finding faces that lie exactly on each other.
+/* Finding faces lying exactly on each other.
  *
  * A face is known by the edges around it: its signature is a sum over its directed edges
  * of
  *
  *     m(p, q) - m(q, p)
  *
- * with m a hash of the coordinates of both ends. The sum does not depend on the corner at
- * which it begins, a face that is turned over has the negative, and an edge that two
- * triangles share cancels out: the sum over the triangles of a polygon is that around the
- * polygon, whatever diagonals it was cut along. That matters, since a quad that is there
- * twice, the second time from another corner on or from behind, is cut along the other
+ * with m a hash of the coordinates of both ends. The sum does not depend on its first
+ * corner, a face turned over has the negative, and an edge shared by two triangles
+ * cancels out: the sum over the triangles of a polygon is the sum around the polygon,
+ * whatever the diagonals of the cuts. Diagonals do differ: of a quad given twice, the
+ * second time from another corner on or from behind, the second is cut along the other
  * diagonal.
  *
- * Signatures have 128 bits and are taken for the edges themselves: that two of k
- * different faces have the same one has a chance of k^2 / 2^129, which is below the
- * machine's own chance to err. They are looked up in a hash table (linear probing) in
- * which a face and its opposite share an entry. Most faces are alone and never come
- * there: a sieve of one bit for each remainder of a signature, which fits into a cache,
- * tells that no other face has theirs.
+ * Signatures have 128 bits and are taken for the edges themselves: two of k different
+ * faces have the same one with a chance of k^2 / 2^129, which is below the machine's own
+ * chance to err. Signatures are looked up in a hash table (linear probing) in which a
+ * face and its opposite share an entry. Most faces are alone and never enter the table: a
+ * sieve of one bit for each remainder of a signature, which fits into a cache, tells of
+ * no other face with theirs.
  *
- * Whole faces come first, then the triangles of those that stay: a triangle may repeat
- * one half of a quad. Of two quads back to back the second is to have the diagonal of the
- * first. A polygon whose edges cancel each other (it is folded onto itself) has the
- * signature 0, as all such have, and is looked up by its triangles alone.
+ * Whole faces come first, then the triangles of the kept ones: a triangle may repeat one
+ * half of a quad. Of two quads back to back the second is to have the diagonal of the
+ * first. A polygon folded onto itself, whose edges cancel each other, has the signature
+ * 0, like all others of this kind, and is looked up by its triangles alone.
  *
  * Rejected: sorting (three times as long for a million triangles); vertex numbers, for
  * programs write the same corner twice. */
@@ -46,10 +46,10 @@ struct signature {
  * the first and 1; 0: there is none. */
 struct entry {
     struct signature signature; /* of the face on side 0 */
-    int32_t face[2];            /* those that face one way, and the other */
+    int32_t face[2];            /* faces turned one way, and the other */
 };
 
-/* The faces that are known so far. */
+/* The faces known so far. */
 struct catalogue {
     const struct faces *faces;
     struct signature *signatures; /* [faces->count] of the triangles */
@@ -88,7 +88,7 @@ static struct signature signature_of(const struct triangle *t)
     return sum;
 }
 
-/* Of the face that faces the other way. */
+/* Of the face turned the other way. */
 static struct signature turned(struct signature s)
 {
     return (struct signature){{-s.lane[0], -s.lane[1]}};
@@ -164,7 +164,7 @@ static int32_t number_of(int32_t face)
     return (face < 0 ? -face : face) - 1;
 }
 
-/* Pairs two faces that lie back to back, triangle by triangle. */
+/* Pairs two faces lying back to back, triangle by triangle. */
 static void pair(struct catalogue *known, int32_t face, int32_t other)
 {
     int32_t i = number_of(face), j = number_of(other);
@@ -177,8 +177,8 @@ static void pair(struct catalogue *known, int32_t face, int32_t other)
     }
 }
 
-/* Looks up a face. Returns the number of the one that it repeats, or -1; then it is
- * entered. */
+/* Looks up a face, and enters a new one. Returns the number of the repeated face, or
+ * -1. */
 static int32_t look_up(struct catalogue *known, struct signature s, int32_t face)
 {
     int side = side_of(&s);
@@ -208,7 +208,7 @@ static int32_t look_up_polygon(struct catalogue *known, int32_t begin, int32_t e
     return folded ? -1 : look_up(known, whole, -(begin + 1));
 }
 
-/* Looks up a triangle; one of a polygon that has an opposite, as that is cut. */
+/* Looks up a triangle; one of a polygon with an opposite, as the opposite is cut. */
 static int32_t look_up_triangle(struct catalogue *known, int32_t i)
 {
     int32_t cut = known->opposite[i] >= 0 ? known->opposite[i] : i;

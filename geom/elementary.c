@@ -6,7 +6,7 @@
  *     atan t = atan c + atan z,    z = (t - c) / (1 + c t),    |z| <= 1/16,
  *
  * t - c is exact, and the odd Taylor series to z^13 leaves out less than 2e-19. The last
- * term added is the angle of the table, so the error is that of one rounding and of the
+ * term added is the angle of the table, so the error comes from one rounding and from the
  * table: one unit or two in the last place, and none for c = 0, where the result may be
  * small.
  *
@@ -16,8 +16,7 @@
  *
  * s^23 is the first power left out, 1e-18 of s. So that the rounding of s does not count,
  * 2 s is written as f - (f^2/2 - s f^2/2): the series then only corrects f. e ln 2 is
- * added in two parts, of which the first has zeros at its end, so that it is exact for
- * every e.
+ * added in two parts, of which the first has zeros at its end and is exact for every e.
  *
  * Rejected: libm, whose last bits differ between systems; rational or minimax
  * coefficients, which save two products and have to be believed, while these series can

@@ -1,4 +1,4 @@
-/* Arctangent and logarithm that are the same bits on every machine.
+/* Arctangent and logarithm, with the same bits on every machine.
  *
  * C leaves the last bit of atan2() and log() to the library, and libraries differ. These
  * two use + - * / and exact scaling only, so their results are as reproducible as those

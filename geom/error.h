@@ -1,8 +1,8 @@
-/* Errors of the user or the system as values: a text and the exit code that it asks for.
+/* Errors of the user or the system as values: a text and an exit code.
  *
- * A function that can fail so takes a `struct error *`, fills it and returns false.
- * Nothing is printed where the error is found: the ranks first agree on it, then rank 0
- * prints it, behind the name of the program. */
+ * A function that can fail so takes a `struct error *`, fills the error in and returns
+ * false. Nothing is printed where the error is found: the ranks first agree on the error,
+ * then rank 0 prints the text, behind the name of the program. */
 #ifndef GEOM_ERROR_H
 #define GEOM_ERROR_H
 
@@ -11,7 +11,7 @@
 
 enum {
     EXIT_DONE = 0,  /* the computation ended well */
-    EXIT_FAILED = 1, /* it failed: diverged, out of memory, cannot write */
+    EXIT_FAILED = 1, /* a failure: diverged, out of memory, cannot write */
     EXIT_USAGE = 2  /* bad usage or bad input */
 };
 
@@ -23,9 +23,9 @@ struct error {
 /* The name of the program, "phr" unless its main() says otherwise. */
 extern const char *error_program;
 
-/* Fills `error` from a printf format unless it holds an error already (the first one
+/* Fills `error` from a printf format unless there is an error already (the first one
  * counts); control characters of the text (which may quote a file) become '?'. Returns
- * false, so that a caller can write `return error_set(...)`. */
+ * false, so a caller can write `return error_set(...)`. */
 #ifdef __GNUC__
 __attribute__((format(printf, 3, 4)))
 #endif

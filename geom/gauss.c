@@ -1,9 +1,9 @@
 /* Nodes and weights of four rules, to the last bit of a double.
  *
- * A function that is analytic inside the ellipse with foci at the ends of the interval
- * and half axes of sum r (in units of half the interval) is integrated by n points with
- * an error of order r^(-2n) (Trefethen, Approximation Theory and Approximation Practice,
- * Theorem 19.3). So 4, 6, 10 and 16 points give 12 digits for r = 32, 10, 4 and 2.4;
+ * A function analytic inside the ellipse with foci at the ends of the interval and half
+ * axes of sum r (in units of half the interval) is integrated by n points with an error
+ * of order r^(-2n) (Trefethen, Approximation Theory and Approximation Practice, Theorem
+ * 19.3). So 4, 6, 10 and 16 points give 12 digits for r = 32, 10, 4 and 2.4;
  * geom/contour.c chooses by r.
  *
  * Rejected: nodes found by iteration at start, which needs a cosine to begin with. */

@@ -1,5 +1,4 @@
-/* Gauss-Legendre quadrature: n points that are exact for polynomials of degree 2 n -
- * 1. */
+/* Gauss-Legendre quadrature: n points, exact for polynomials of degree 2 n - 1. */
 #ifndef GEOM_GAUSS_H
 #define GEOM_GAUSS_H
 

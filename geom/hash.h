@@ -1,6 +1,5 @@
-/* FNV-1a, 64 bits: tells files and scenes apart that differ by accident. A changed byte
- * always changes it; it is no protection against those who want two files to look
- * alike. */
+/* FNV-1a, 64 bits: tells apart files and scenes differing by accident. A changed byte
+ * always changes the hash, but no attacker is kept from making two files look alike. */
 #ifndef GEOM_HASH_H
 #define GEOM_HASH_H
 
@@ -11,7 +10,7 @@
 
 #define HASH_START UINT64_C(14695981039346656037)
 
-/* Goes on with a hash: that of the bytes before, and of `count` more. */
+/* Goes on with the hash of the bytes before, over `count` more. */
 static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
 {
     const uint8_t *at = bytes;
@@ -31,7 +30,7 @@ static inline uint64_t hash_doubles(uint64_t hash, const double *values, int cou
     return hash;
 }
 
-/* 2^64 by the golden ratio: seeds that differ by multiples of it are far apart. */
+/* 2^64 by the golden ratio: seeds differing by multiples of this are far apart. */
 #define HASH_STEP UINT64_C(0x9E3779B97F4A7C15)
 
 /* Mixes all bits: the finaliser of splitmix64 (Steele et al. 2014). */

@@ -1,8 +1,7 @@
-/* The convex hull of two triangles, cut off at their planes, as the half spaces that hold
- * it.
+/* The convex hull of two triangles, cut off at their planes, as half spaces.
  *
  * Its sides are among the planes through an edge of one and a corner of the other, 18 in
- * all: those that have all six corners on one side. Whether a triangle enters is decided
+ * all: the planes with all six corners on one side. Whether a triangle enters is decided
  * by cutting it with all planes in turn (Sutherland and Hodgman): exact up to rounding,
  * whatever its place. */
 #include "geom/hull.h"
@@ -12,8 +11,8 @@ static void add_plane(struct hull *hull, struct vec3 normal, double offset)
     hull->planes[hull->count++] = (struct plane){normal, offset};
 }
 
-/* The planes through an edge of p and a corner of q that have all of both on one side.
- * Those of q and p are found with the arguments the other way round. */
+/* The planes through an edge of p and a corner of q with all of both on one side. Swapped
+ * arguments give the planes through an edge of q. */
 static void add_sides(struct hull *hull, const struct triangle *p,
                       const struct triangle *q)
 {
@@ -38,8 +37,7 @@ static void add_sides(struct hull *hull, const struct triangle *p,
 
 enum { CLIPPED = 3 + 2 + 18 }; /* corners of a triangle after cutting by all planes */
 
-/* Keeps the part behind the plane by more than rounding. Returns the corners that are
- * left. */
+/* Keeps the part behind the plane by more than rounding. Returns the corners left. */
 static int cut(const struct vec3 *corners, int count, const struct plane *plane,
                struct vec3 *left)
 {

@@ -1,11 +1,11 @@
-/* The space between two triangles: it holds all that can stand between them. */
+/* The space between two triangles: the place of everything that can stand between. */
 #ifndef GEOM_HULL_H
 #define GEOM_HULL_H
 
 #include "geom/triangle.h"
 
-/* Half spaces whose intersection is the convex hull of two triangles, as far as it lies
- * in front of both: the points behind all planes. */
+/* Half spaces whose intersection is the convex hull of two triangles, as far as the hull
+ * lies in front of both: the points behind all planes. */
 struct hull {
     struct plane planes[2 + 18];
     int count;

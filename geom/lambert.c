@@ -8,28 +8,28 @@
  * exact for any polygon above the horizon. The angle is arctangent(|r_k x r_k+1|, r_k .
  * r_k+1), right for small, straight and obtuse angles alike; acos of the normalised
  * product loses half of the digits at small angles and leaves its domain by rounding. A
- * triangle that the horizon cuts keeps the part above, three or four corners.
+ * triangle cut by the horizon keeps the part above, three or four corners.
  *
- * The terms are of order 1, so each sum is right to some 1e-16, whatever it is. It is
- * much smaller than that, and most of its digits are lost, for a triangle of size s at a
- * large distance d: F is (s/d)^2. The integral
+ * The terms are of order 1, so each sum is right to some 1e-16, whatever its size. The
+ * sum is much smaller than its terms, and most of its digits are lost, for a triangle of
+ * size s at a large distance d: F is (s/d)^2. The integral
  *
  *     F = h / pi  integral of  (n . r) / |r|^4  dA,   h the distance of x to the plane,
  *
- * has no terms that cancel. Where s is at most FAR of d it is taken by Radon's rule of
- * seven points, exact to degree 5: its error falls with (s/d)^6 and is 3e-10 of F at
- * most, and it costs two thirds of the time of three arctangents. F is then small only
- * where h or n . r are, and so is its error.
+ * has no cancelling terms. Where s is at most FAR of d the integral is taken by Radon's
+ * rule of seven points, exact to degree 5: its error falls with (s/d)^6 and is 3e-10 of F
+ * at most, for two thirds of the time of three arctangents. F is then small only where h
+ * or n . r are, and so is its error.
  *
  * The sum is small for three more reasons: x close to the plane of the triangle and not
  * over it, a triangle that reaches just above the horizon, a sliver. There the error
  * stays some 1e-16 of the hemisphere and is not a small part of F. Cutting such triangles
- * into pieces that are far gives all digits, at a hundred to ten thousand times the
- * price; faces that are in one plane but for the rounding of their file would pay it
- * everywhere, for light that is not there.
+ * into far pieces gives all digits, at a hundred to ten thousand times the price; faces
+ * in one plane but for the rounding of their file would pay this everywhere, for light
+ * that is not there.
  *
  * A point on the plane but for rounding must see nothing: just in front of a triangle
- * that faces it it would see nothing else.
+ * facing the point, nothing else would be seen.
  *
  * Rejected: a single point for far triangles, whose error falls with (s/d)^2 only. */
 #include "geom/lambert.h"

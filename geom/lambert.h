@@ -1,16 +1,16 @@
 /* Form factors from a point to a polygon, without visibility.
  *
  * The factor F (1) is the share of the hemisphere above the point, weighted by the cosine
- * to the normal, that the polygon covers: a point under an emitter of radiosity B
- * receives the irradiance F B. The polygon is one-sided: it is seen only from its front,
- * where its corners are counter-clockwise. The part below the point's horizon (the plane
- * through it at right angles to its normal) is cut off. 0 <= F <= 1, always.
+ * to the normal, covered by the polygon: a point under an emitter of radiosity B receives
+ * the irradiance F B. The polygon is one-sided: only its front is seen, where its corners
+ * are counter-clockwise. The part below the point's horizon (the plane through the point
+ * at right angles to its normal) is cut off. 0 <= F <= 1, always.
  *
  * F is 0 where the point is on the polygon's plane, within rounding, or behind it.
  *
  * Error: at most 1e-9 F + 1e-15, besides the effect of rounded coordinates; a polygon
- * that covers little only because it is far away keeps the 1e-9. Lengths may be in any
- * unit between 1e-60 and 1e60. Source: Lambert, Photometria (1760). */
+ * covering little only by its distance keeps the 1e-9. Lengths may be in any unit between
+ * 1e-60 and 1e60. Source: Lambert, Photometria (1760). */
 #ifndef GEOM_LAMBERT_H
 #define GEOM_LAMBERT_H
 

@@ -1,13 +1,13 @@
 /* Laying out an object's arrays one after the other in a block of memory, for others to
- * look at: processes that see the block at another address, or that are sent its bytes.
+ * look at: processes with the block at another address, or with a copy of its bytes.
  *
  *     struct pack count = {0};              struct pack write = {block, 0, true};
  *     thing_pack(thing, &count);            thing_pack(thing, &write);
  *     block = ... count.bytes ...           struct pack read = {block, 0, false};
  *                                           view = thing_view(&read);
  *
- * An object's head, its struct, goes before its arrays; pointers in it mean nothing in
- * the block. */
+ * An object's head, its struct, goes before its arrays; pointers in the head mean nothing
+ * in the block. */
 #ifndef GEOM_PACK_H
 #define GEOM_PACK_H
 
@@ -23,8 +23,8 @@ struct pack {
     bool writes;
 };
 
-/* Where the next array of `bytes` bytes is in the block, NULL when counting. A pack that
- * writes copies `array` there. */
+/* Where the next array of `bytes` bytes is in the block, NULL when counting. A writing
+ * pack copies `array` there. */
 static inline void *pack_array(struct pack *pack, const void *array, size_t bytes)
 {
     char *at = pack->block ? pack->block + pack->bytes : NULL;
@@ -34,8 +34,8 @@ static inline void *pack_array(struct pack *pack, const void *array, size_t byte
     return at;
 }
 
-/* Does so with the `count` elements that the pointer `array` of a head points to, which
- * then points to their place. */
+/* Does so with the `count` elements behind the pointer `array` of a head, which then
+ * points to their place. */
 #define PACK(pack, array, count) \
     ((array) = pack_array(pack, array, (size_t)(count) * sizeof *(array)))
 

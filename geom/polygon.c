@@ -1,24 +1,24 @@
 /* Triangulation by ear clipping.
  *
  * The polygon is projected along the axis in which its Newell normal (the sum of the
- * cross products of successive corners) is largest; that keeps the orientation and
- * forgives corners that lie a little off a plane. If all triangles (0, i, i+1) then turn
- * left, the angle about corner 0 grows all the way, and the fan is a triangulation. That
- * is the case for almost all input, and it takes linear time.
+ * cross products of successive corners) is largest; so the orientation stays, and corners
+ * may lie a little off a plane. If all triangles (0, i, i+1) then turn left, the angle
+ * about corner 0 grows all the way, and the fan is a triangulation. Almost all input is
+ * of this kind, and takes linear time.
  *
  * Otherwise ears are cut: corners b with neighbours a and c where a, b, c turn left and
  * no other corner lies in the closed triangle. Cutting one changes the state of its two
  * neighbours only, so n corners take n^2 tests of a point against a triangle. After a cut
  * the search goes on two corners further, which gives fewer slivers than cutting round
- * one corner. Straight corners are no ears, so they end as corners of triangles with an
+ * one corner. Straight corners are no ears, so each ends as a corner of triangles with an
  * area.
  *
  * Corners where the edges fold back over themselves (repeated corners, spikes) enclose
  * nothing and are cut before all others. Corners in the same place as one of an ear's do
  * not count as inside it: the seam of a polygon with a hole runs through the same points
- * twice. Corners that are outside by no more than rounding do count, since a cut would
- * leave a polygon that touches itself. In a polygon that crosses itself the ears may run
- * out; then the next corner is cut, whatever it is, and the count comes out right.
+ * twice. Corners outside by no more than rounding do count, since a cut would leave a
+ * polygon touching itself. In a polygon crossing itself the ears may run out; then any
+ * next corner is cut, and the count comes out right.
  *
  * Rejected: monotone partition in n log n, which does not survive repeated corners and
  * crossings without special cases; dropping straight corners first, which would leave
@@ -76,7 +76,7 @@ static struct vec3 newell_normal(const struct vec3 *corners, int32_t count, doub
     return normal;
 }
 
-/* Fills the plane coordinates of all corners such that the polygon is
+/* Fills the plane coordinates of all corners, so as to make the polygon
  * counter-clockwise. */
 static void project(const struct vec3 *corners, int32_t count, struct corner *ring)
 {
@@ -127,8 +127,8 @@ static bool is_ear(const struct corner *ring, int32_t i)
     return true;
 }
 
-/* True where the way to corner i and the way on run back over each other, or one of them
- * has no length. */
+/* True where the ways to corner i and from there run back over each other, or one has no
+ * length. */
 static bool is_fold(const struct corner *ring, int32_t i)
 {
     const struct corner *b = &ring[i], *a = &ring[b->previous], *c = &ring[b->next];
@@ -136,7 +136,7 @@ static bool is_fold(const struct corner *ring, int32_t i)
            (a->u - b->u) * (c->u - b->u) + (a->v - b->v) * (c->v - b->v) >= 0.0;
 }
 
-/* The first ear from corner `from` on, or that corner if there is none. */
+/* The first ear from corner `from` on, or `from` if there is none. */
 static int32_t find_ear(const struct corner *ring, int32_t from)
 {
     int32_t i = from;

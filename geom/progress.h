@@ -1,5 +1,6 @@
 /* How far a phase of the work has come. The loops of the method tick, cheaply; whether
- * somebody looks, and how it is drawn, is not their business (io/run/progress.h). */
+ * somebody looks, and how progress is drawn, is not their business
+ * (io/run/progress.h). */
 #ifndef GEOM_PROGRESS_H
 #define GEOM_PROGRESS_H
 
@@ -10,8 +11,8 @@ struct progress {
     int64_t stage;     /* counts phases and levels begun */
     const char *phase; /* such as "linking" */
     int64_t level;     /* of refinement; -1: there are none */
-    int64_t links;     /* that the phase goes over, on all ranks; 0: it does not */
-    double share;      /* of the phase, or of its level, that is done, 0..1 */
+    int64_t links;     /* gone over by the phase, on all ranks; 0: none */
+    double share;      /* of the phase, or of its level, done so far, 0..1 */
 };
 
 /* A phase, or a level of it, begins. `progress` may be NULL, here and below. */

@@ -2,9 +2,8 @@
  *
  * Scaling by a power of two is exact, so a scene scaled by 2^k gives the same bits in
  * scene units, and no threshold of the program has to know how large the scene is. Moving
- * the centre to the origin costs one rounding per coordinate and takes away the digits
- * that a large offset would eat. Shared vertices stay shared: equal inputs give equal
- * outputs. */
+ * the centre to the origin costs one rounding per coordinate and saves the digits eaten
+ * by a large offset. Shared vertices stay shared: equal inputs give equal outputs. */
 #include "geom/scene.h"
 
 #include <string.h>
@@ -189,7 +188,7 @@ void scene_take_radiances(struct scene *scene)
             scene->materials[m].emission.band[c] *= PI;
 }
 
-/* Computes area and plane, unless they are 0. True if they are not. */
+/* Computes area and plane, unless 0. True if not 0. */
 static bool measure_triangle(struct scene *scene, int32_t i)
 {
     if (triangle_is_degenerate(&scene->triangles[i]))
@@ -208,7 +207,7 @@ static int64_t measure_triangles(struct scene *scene)
     return degenerate;
 }
 
-/* Returns the normal that one of a face's triangles has at a corner in this place. */
+/* Returns the normal of one of a face's triangles at a corner in this place. */
 static struct vec3 normal_at(const struct triangle *face, const struct vec3 *normals,
                              int32_t count, struct vec3 place)
 {
@@ -220,8 +219,8 @@ static struct vec3 normal_at(const struct triangle *face, const struct vec3 *nor
     return (struct vec3){0.0, 0.0, 0.0};
 }
 
-/* Cuts a polygon like the one whose back it is, whose first triangle is `other`: were a
- * bent quad cut along the other diagonal, its black back would stick out. */
+/* Cuts a polygon like the one at its back, whose first triangle is `other`: were a bent
+ * quad cut along the other diagonal, its black back would stick out. */
 static void cut_alike(struct scene *scene, int32_t begin, int32_t count, int32_t other)
 {
     struct triangle *before = alloc_array((size_t)count, sizeof *before);
@@ -384,9 +383,9 @@ double scene_own_area(const struct scene *scene)
     return sum;
 }
 
-/* The light of a uniform sky is that of a half space to the top of the box, and to its
- * sides that of a quarter: half as much. It shines down along y or z, whichever is the
- * axis of its largest sum of normals. */
+/* A uniform sky lights the top of the box like a half space, and the sides like a
+ * quarter: half as much. The sky shines down along y or z, whichever is the axis of its
+ * largest sum of normals. */
 double scene_entering_power(const struct scene *scene)
 {
     struct vec3 low = scene->triangles[0].corner[0], high = low, down = {0.0, 0.0, 0.0};

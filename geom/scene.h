@@ -19,7 +19,7 @@ struct material {
     struct rgb emission;    /* E, emitted radiosity, W/m^2, each band >= 0 */
 };
 
-/* True for a surface that neither reflects nor emits. */
+/* True for a surface without reflectance and emission. */
 static inline bool material_is_dark(const struct material *material)
 {
     return rgb_sum(material->reflectance) == 0.0 && rgb_sum(material->emission) == 0.0;
@@ -43,17 +43,17 @@ static inline bool material_emits(const struct material *material)
 /* Repairs of an input, for one warning per kind. */
 struct scene_repairs {
     int64_t degenerate; /* triangles without area, dropped (their numbers stay) */
-    int64_t doubles;    /* triangles that lie on earlier ones and face the same way,
+    int64_t doubles;    /* triangles lying on earlier ones and facing the same way,
                          * dropped alike */
-    int64_t unlike;     /* of these, those of another material than the one that stays */
+    int64_t unlike;     /* of these, those of another material than the kept one */
     int64_t clamped;    /* materials with a reflectance of 1 or more, set to 0.999 */
 };
 
 /* Faces of the file, which triangles are cut from, and its groups of faces. */
 struct scene_groups {
     int32_t *of;   /* [input_count], number of the group of each triangle */
-    bool *goes_on; /* [input_count], it is of the face of the triangle before it; NULL
-                    * after scene_prepare() */
+    bool *goes_on; /* [input_count], of the same face as the triangle before; NULL after
+                    * scene_prepare() */
     char *names;   /* [bytes], each with its zero */
     int32_t count; /* at least 1 */
     int64_t bytes;
@@ -70,8 +70,8 @@ struct scene {
     struct plane *planes;       /* [input_count]; zero for a dropped triangle */
     double *areas;              /* [input_count], square scene units; 0: dropped */
     int32_t *material_of;       /* [input_count], index into materials */
-    bool *opposed;              /* [input_count], another triangle, that faces the other
-                                 * way, lies on it, and has the place of its twin */
+    bool *opposed;              /* [input_count], another triangle lies on this one,
+                                 * facing the other way, in place of a twin */
     struct material *materials; /* [material_count] */
     struct vec3 *normals;       /* [3 * input_count] or NULL, of corner k of triangle i at
                                  * [3 i + k], for smooth shading: of length 1, or 0 */
@@ -82,7 +82,7 @@ struct scene {
                                  * part of the file; input_count: there is none */
     int32_t material_count;
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
-    bool two_sided_lamps;       /* if two_sided: those that emit have twins, too */
+    bool two_sided_lamps;       /* if two_sided: lamps have twins, too */
     struct scene_place place;
     struct vec3 low, high;      /* bounding box, scene units */
     bool is_view;               /* the arrays lie in memory of others */
@@ -93,7 +93,7 @@ struct scene {
 struct scene *scene_create(int32_t input_count, int32_t material_count);
 void scene_destroy(struct scene *scene);
 
-/* Into a block, and as it is there: read-only, valid as long as the block. */
+/* Into a block, and as laid out there: read-only, valid as long as the block. */
 void scene_pack(const struct scene *scene, struct pack *pack);
 struct scene *scene_view(struct pack *pack);
 
@@ -116,12 +116,12 @@ void scene_take_radiances(struct scene *scene);
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
                    struct error *error);
 
-/* Prepares, in place of scene_prepare(), a scene whose positions are in scene units, with
- * the centre and the exponent that they have come by. */
+/* Prepares, in place of scene_prepare(), a scene of positions in scene units, with the
+ * centre and the exponent used for these. */
 void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent);
 
-/* Finds the faces of a restored scene that are modelled from both sides; of those that
- * have an area. */
+/* Finds the faces of a restored scene modelled from both sides; only faces with an
+ * area. */
 void scene_find_backs(struct scene *scene);
 
 /* Drops a triangle from a prepared scene. */
@@ -129,10 +129,10 @@ void scene_drop(struct scene *scene, int32_t input);
 
 /* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
  * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. A
- * face that is modelled from both sides has no twins: each side has the other's place. */
+ * face modelled from both sides has no twins: each side has the other's place. */
 int32_t scene_root_count(const struct scene *scene);
 
-/* The input triangle behind a root: itself, or the one whose twin it is. */
+/* The input triangle behind a root: itself, or the one with this twin. */
 static inline int32_t scene_input_of(const struct scene *scene, int32_t root)
 {
     return root < scene->input_count ? root : root - scene->input_count;
@@ -147,7 +147,7 @@ static inline bool scene_is_sky(const struct scene *scene, int32_t root)
 /* True if the back of an input triangle is the front of a twin. */
 bool scene_has_twin(const struct scene *scene, int32_t input);
 
-/* The root whose front is on the front, or the back, of an input triangle; -1 if that
+/* The root whose front is on the front, or the back, of an input triangle; -1 if this
  * side is black. */
 static inline int32_t scene_root_on(const struct scene *scene, int32_t input, bool front)
 {
@@ -214,8 +214,8 @@ double scene_entering_power(const struct scene *scene);
  * input. */
 double scene_area_unit(const struct scene *scene);
 
-/* A number that tells prepared scenes apart by their triangles and materials, in scene
- * units; the same on every machine. Neither the path of a file nor the names in it
+/* A number telling prepared scenes apart by their triangles and materials, in scene
+ * units; the same on every machine. Neither paths nor names of materials and groups
  * count. */
 uint64_t scene_hash(const struct scene *scene);
 

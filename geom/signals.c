@@ -1,15 +1,15 @@
 /* Being asked to stop.
  *
- * The handler sets a flag and nothing else, so it may come inside MPI. The long loops of
- * all layers look at the flag (geom/stop.h). Ranks tell each other of it in exchanges
- * that there are anyway (before each level of refinement, with each vote, when they
- * agree on errors), so that all stop in the same place, wherever the signal went:
- * mpiexec passes it on to all ranks, kill to one. A signal that the shell has set to be
- * ignored stays so, as for a job in the background.
+ * The handler sets a flag and nothing else, so signals may come inside MPI. The long
+ * loops of all layers look at the flag (geom/stop.h). Ranks tell each other of the signal
+ * in exchanges made anyway (before each level of refinement, with each vote, when they
+ * agree on errors), so that all stop in the same place, wherever the signal went: mpiexec
+ * passes it on to all ranks, kill to one. A signal ignored by the shell stays ignored, as
+ * for a job in the background.
  *
- * The system begins system calls again that a signal has met, since MPI is not made for
- * calls that end early. While a file is read there is no MPI, and calls end: a pipe that
- * nobody writes to does not keep the program from ending. */
+ * The system begins a system call again after a signal, since MPI is not made for calls
+ * ending early. While a file is read there is no MPI, and calls end: a pipe without a
+ * writer does not keep the program from ending. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #define HAVE_SIGACTION 1
@@ -22,8 +22,8 @@
 
 #include "geom/stop.h"
 
-/* Signals that stop a run: of users, of terminals that close, of batch systems when time
- * is nearly up. */
+/* Signals to stop a run: of users, of closing terminals, of batch systems when time is
+ * nearly up. */
 static const struct {
     int number;
     const char *name;
@@ -64,7 +64,7 @@ static void catch_once(int number)
         sigaction(number, &action, NULL);
 }
 
-/* Unless it has come already, or is ignored. */
+/* Unless the signal has come already, or is ignored. */
 static void set_restart(int number, bool restarts)
 {
     struct sigaction action;

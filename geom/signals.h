@@ -4,17 +4,17 @@
 
 #include <stdbool.h>
 
-/* From here on the first of these signals is remembered and stops loops that ask
+/* From here on the first of these signals is remembered and stops loops asking
  * stop_is_asked(); a second of its kind has its usual effect, but of SIGXCPU; a write
- * beyond the limit of a file's size (SIGXFSZ) or to a pipe that nobody reads any more
- * (SIGPIPE) is an error like a full disk. */
+ * beyond the limit of a file's size (SIGXFSZ) or to a pipe without readers (SIGPIPE) is
+ * an error like a full disk. */
 void signals_catch(void);
 
-/* Whether a signal ends a system call that waits, such as for a pipe, with an error. At
- * first it does not. Pre: no MPI is called while it does. */
+/* Whether a signal ends a waiting system call, such as for a pipe, with an error; at
+ * first not. Pre: no MPI is called while signals end calls. */
 void signals_end_calls(bool ends);
 
-/* The signal that this rank has got, 0: none. */
+/* The signal received by this rank, 0: none. */
 int signals_seen(void);
 
 /* "SIGTERM" and so on. */

@@ -1,14 +1,14 @@
 /* Being asked to stop.
  *
- * Loops that may take seconds ask before each step of a millisecond or less whether they
- * are to break off. The result of such a loop is incomplete: it can be packed, sent and
- * freed, and nothing else may be done with it. Readers and writers of files end with an
- * error instead. Since the request is never taken back, a caller that asks at the end of
- * a phase knows of each loop that broke off in it.
+ * Loops that may take seconds ask before each step of a millisecond or less whether to
+ * break off. The result of such a loop is incomplete: fit to be packed, sent and freed,
+ * and for nothing else. Readers and writers of files end with an error instead. Since the
+ * request is never taken back, a caller asking at the end of a phase knows of each loop
+ * broken off before.
  *
  * The question has one place in the process, like the handler of exhausted memory
- * (geom/alloc.c). Rejected: handing it down as an argument, through some forty functions
- * that have no other use for it. */
+ * (geom/alloc.c). Rejected: handing the question down as an argument, through some forty
+ * functions with no other use for it. */
 #include "geom/stop.h"
 
 static bool (*is_asked)(void);

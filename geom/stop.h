@@ -7,12 +7,12 @@
 
 #include "geom/error.h"
 
-/* `asked()` tells whether the program is asked to stop, and never takes that back. NULL:
- * it is not. */
+/* `asked()` tells whether the program is asked to stop, and never takes a yes back. NULL:
+ * not asked. */
 void stop_when(bool (*asked)(void));
 
-/* True if the loop that asks is to break off. Its result can be packed and freed, and is
- * of no other use. */
+/* True if the asking loop is to break off. Its result can be packed and freed, and is of
+ * no other use. */
 bool stop_is_asked(void);
 
 /* True if nobody asks the program to stop. Else fills `error`, as error_set() does. */

@@ -1,16 +1,16 @@
 /* Triangles and the watertight segment test.
  *
  * The test follows Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1),
- * 2013): coordinates are taken relative to the segment's start, permuted and sheared so
- * that the segment runs along the third axis; the three edge functions of the projected
+ * 2013): coordinates are taken relative to the segment's start, permuted and sheared to
+ * turn the segment into the third axis; the three edge functions of the projected
  * triangle then say whether the origin is inside. It is watertight because:
  *
- *  - a vertex is projected to the same bits whichever triangle it belongs to;
+ *  - a vertex is projected to the same bits in each of its triangles;
  *  - an edge function is x1 y2 - x2 y1, so triangles at an edge get exact negatives;
  *  - rounding is monotone, so the sign of that difference is right or zero, not inverted,
  *    and zero counts as inside.
  *
- * So no line slips between two triangles that share an edge. A fused multiply-add would
+ * So no line slips between two triangles with a common edge. A fused multiply-add would
  * break the second point, which is one more reason for -ffp-contract=off.
  *
  * Rejected: Moeller-Trumbore (each triangle rounds a shared edge for itself, so rays
@@ -23,8 +23,8 @@
 /* A triangle is in a plane if no corner is further off than this. */
 static const double COPLANAR = 4.0 * GEOM_ROUNDING;
 
-/* Triangles that share a strip narrower than this part of a side only touch, as those
- * with a corner on the side of another do in a file of six digits. */
+/* Triangles sharing a strip narrower than this part of a side only touch, as those with a
+ * corner on the side of another do in a file of six digits. */
 static const double TOUCHING = 1e-6;
 
 struct vec3 triangle_cross(const struct triangle *t)

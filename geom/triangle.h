@@ -1,4 +1,4 @@
-/* Triangles: area, normal, subdivision, and the segment test that decides visibility. */
+/* Triangles: area, normal, subdivision, and the segment test for visibility. */
 #ifndef GEOM_TRIANGLE_H
 #define GEOM_TRIANGLE_H
 
@@ -20,8 +20,8 @@ struct plane {
     double offset;      /* normal . x of the points x of the plane */
 };
 
-/* Segment or ray prepared for the watertight test: coordinates are sheared so that the
- * direction becomes the third axis. */
+/* Segment or ray prepared for the watertight test: coordinates are sheared to make the
+ * direction the third axis. */
 struct segment {
     struct vec3 from, to;
     int axis[3];     /* order of the coordinates; |to - from| is largest on axis[2] */
@@ -46,7 +46,7 @@ static inline double triangle_radius(const struct triangle *t)
     return real_max(a, real_max(b, vec3_length(vec3_sub(t->corner[2], centre))));
 }
 
-/* The corners of the box around it. */
+/* The corners of the box around the triangle. */
 static inline struct vec3 triangle_low(const struct triangle *t)
 {
     return vec3_least(t->corner[0], vec3_least(t->corner[1], t->corner[2]));
@@ -57,9 +57,9 @@ static inline struct vec3 triangle_high(const struct triangle *t)
     return vec3_most(t->corner[0], vec3_most(t->corner[1], t->corner[2]));
 }
 
-/* Three points, the mean over which is that over the triangle for what varies with the
- * square of the place (Stroud's formula of degree 2): the barycentric coordinates of
- * point k are 2/3 for corner k, and 1/6. */
+/* Three points; for polynomials of degree 2 the mean over these is the mean over the
+ * triangle (Stroud's formula of degree 2): the barycentric coordinates of point k are 2/3
+ * for corner k, and 1/6. */
 static inline void triangle_three_points(const struct triangle *t, struct vec3 x[3])
 {
     const struct vec3 *c = t->corner;
@@ -68,8 +68,8 @@ static inline void triangle_three_points(const struct triangle *t, struct vec3 x
         x[k] = vec3_add(sixth, vec3_scale(c[k], 0.5));
 }
 
-/* The mean of three corners, or of their normals, with these weights, which are x, y and
- * z: the point that has them as its barycentric coordinates. */
+/* The mean of three corners, or of their normals, with the weights x, y and z: the point
+ * with these barycentric coordinates. */
 static inline struct vec3 corners_mean(const struct vec3 corner[3],
                                        struct vec3 weight)
 {
@@ -90,7 +90,7 @@ struct plane triangle_plane(const struct triangle *t);
 bool triangle_is_degenerate(const struct triangle *t);
 
 /* Child 0..3 of the quadtree split: 0 = (a, ab, ca), 1 = (ab, b, bc), 2 = (ca, bc, c) and
- * 3 = (bc, ca, ab). Two triangles that share an edge split it at the same bits. */
+ * 3 = (bc, ca, ab). Two triangles with a common edge split it at the same bits. */
 static inline struct triangle triangle_child(const struct triangle *t, int child)
 {
     struct vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
@@ -157,15 +157,15 @@ struct segment segment_make(struct vec3 from, struct vec3 to);
 
 /* True where the segment's line passes through the closed triangle. Watertight: of the
  * triangles of a closed mesh at least one says yes on each crossing, also through edges
- * and vertices. A line in the triangle's plane misses. If `weight` is not NULL it
- * receives the barycentric coordinates of the point. */
+ * and vertices. A line in the triangle's plane misses. `weight`, unless NULL, receives
+ * the barycentric coordinates of the point. */
 bool segment_line_meets(const struct segment *s, const struct triangle *t,
                         double weight[3]);
 
 /* True where the triangle blocks the segment: its end points lie on opposite sides of the
  * triangle's plane, both off the plane by more than rounding, and the line passes through
  * the triangle. Both sides block. A triangle in whose plane an end point lies does not
- * block: that lets a decal in a wall, or a light flush with the ceiling, be seen. */
+ * block: so a decal in a wall, or a light flush with the ceiling, is visible. */
 bool segment_is_blocked_by(const struct segment *s, const struct triangle *t,
                            const struct plane *plane);
 

@@ -87,8 +87,8 @@ static inline int vec3_compare(struct vec3 a, struct vec3 b)
     return x ? x : y ? y : (a.z > b.z) - (a.z < b.z);
 }
 
-/* As fmin() and fmax() for numbers that are not NaN; compilers make one instruction of
- * them. */
+/* As fmin() and fmax() for numbers that are not NaN; compilers make each one
+ * instruction. */
 static inline double real_min(double a, double b)
 {
     return a < b ? a : b;

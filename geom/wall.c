@@ -1,9 +1,9 @@
 /* Walls.
  *
  * The proof starts with one triangle, with the convex sets P in front of its plane and Q
- * behind, or the other way round, and adds the triangle beyond each side that some
- * segment from P to Q passes on the outer side. It succeeds when no such side is left,
- * and fails where there is no triangle beyond.
+ * behind, or the other way round, and adds the triangle beyond each side with a segment
+ * from P to Q on the outer side. It succeeds when no such side is left, and fails where
+ * there is no triangle beyond.
  *
  * On which side of ab the segment from x to y passes is told by the sign of the volume
  *
@@ -13,18 +13,18 @@
  * corners. So V(x, y) is one of V at pairs of corners: if none of these passes on the
  * outer side, no segment does.
  *
- * Why they are blocked in the end. The triangles run counter-clockwise, and where two of
- * them share a side its two directions cancel; so as many triangles cover a point as
- * their outline winds around it. Seen from a point on the inner side of all its sides,
- * an outline runs counter-clockwise throughout: it winds around it once or more. So it
- * has to be neither convex nor a single loop, and a wall may well have a window.
+ * Why all segments are blocked in the end. The triangles run counter-clockwise, and where
+ * two share a side its two directions cancel; so as many triangles cover a point as their
+ * outline winds around it. Seen from a point on the inner side of all its sides, an
+ * outline runs counter-clockwise throughout: it winds around it once or more. So it has
+ * to be neither convex nor a single loop, and a wall may well have a window.
  *
- * To pass on the outer side means that the two lines are apart by more than rounding: a
- * floor that ends at a tilted wall has corners on the line of its lowest sides. Where
- * both corners lie in the plane V is 0, and its sign, rounding.
+ * A segment passes on the outer side only if the two lines are apart by more than
+ * rounding: a floor ending at a tilted wall has corners on the line of its lowest sides.
+ * Where both corners lie in the plane V is 0, and its sign, rounding.
  *
- * Rejected: outlines of whole walls, found beforehand. Of a large one there is less to
- * test, but beside a window, and where it is not convex, they prove little. */
+ * Rejected: outlines of whole walls, found beforehand. A large wall then takes fewer
+ * tests, but beside a window, and where the wall is not convex, outlines prove little. */
 #include "geom/wall.h"
 
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static bool are_coplanar(const struct walls *walls, int32_t s, int32_t t)
 
 /* --- neighbours --- */
 
-enum { COMPARED_MAX = 16 }; /* sides between the same two points, with one of them */
+enum { COMPARED_MAX = 16 }; /* sides between the same two points, with one of these */
 
 struct wall_side {
     const struct vec3 *low, *high; /* its ends in the order of their coordinates */
@@ -101,7 +101,7 @@ int32_t *walls_find_neighbours(const struct triangle *triangles,
 struct wall_pair {
     const struct vec3 *p, *q; /* corners of the sets */
     int count_p, count_q;
-    struct vec3 across; /* unit length, from the side of q to that of p */
+    struct vec3 across; /* unit length, from the side of q to the side of p */
     double sign;        /* 1: p is in front of the wall; -1: behind */
 };
 
@@ -142,7 +142,7 @@ struct growth {
     int count;
 };
 
-/* Adds a triangle if it is not there. False if there is no room. */
+/* Adds a triangle unless it is there. False if there is no room. */
 static bool growth_add(struct growth *growth, int32_t t)
 {
     uint32_t slot = (uint32_t)t * UINT32_C(2654435769) % SLOTS;

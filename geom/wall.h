@@ -1,6 +1,5 @@
-/* Walls: triangles in one plane that face the same way and hang together by whole sides.
- * Blocking by a wall is proved for whole convex sets, be they triangles or boxes around
- * many. */
+/* Walls: triangles in one plane, facing the same way, joined by whole sides. Blocking by
+ * a wall is proved for whole convex sets, such as triangles or boxes around many. */
 #ifndef GEOM_WALL_H
 #define GEOM_WALL_H
 
@@ -21,10 +20,10 @@ struct walls {
 int32_t *walls_find_neighbours(const struct triangle *triangles,
                                const struct plane *planes, int32_t count);
 
-/* True if it is proved that the wall around a triangle blocks all segments between two
- * convex sets, given by their corners, but for those that start or end in its plane (as
- * where a set has an edge in common with it). Finds all proofs if one wall is flat and
- * convex, and no more than some thousand triangles of it are needed. */
+/* True if the wall around a triangle is proved to block all segments between two convex
+ * sets, given by their corners, but for segments from or to its plane (as where a set has
+ * an edge in common with the wall). Finds all proofs if one wall is flat and convex, and
+ * no more than some thousand of its triangles are needed. */
 bool walls_stand_between(const struct walls *walls, int32_t triangle,
                          const struct vec3 *p, int count_p, const struct vec3 *q,
                          int count_q);
