@@ -6,8 +6,8 @@
 #include "io/run/output.h"
 #include "io/run/place.h"
 
-/* Returns the i-th path to write, or NULL if it is not given. Sets `*count` to the number
- * of such paths. */
+/* Returns the i-th path to write, or NULL if not given. Sets `*count` to the number of
+ * such paths. */
 static const char *written_path(const struct options *options, int i, int *count)
 {
     const char *others[] = {options->stats, options->save_links, options->checkpoint};

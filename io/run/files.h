@@ -1,17 +1,17 @@
-/* The files of a run: no output goes over a file that the run reads, or over another of
- * its outputs. On rank 0 alone, where the files are. */
+/* The files of a run: no output goes over an input of the run, or over another output. On
+ * rank 0 alone, where the files are. */
 #ifndef IO_RUN_FILES_H
 #define IO_RUN_FILES_H
 
 #include "io/run/options.h"
 
-/* Refuses outputs without a format that are neither device nor pipe, and outputs that
- * lead to a file that is read, or to that of another output, however they are spelt, or
- * to the standard output beside --dump; but a run may renew the checkpoint that it was
- * resumed from. EXIT_USAGE. */
+/* Refuses outputs without a format, but for devices and pipes, and outputs leading, in
+ * any spelling, to a file read by the run, to the file of another output, or to the
+ * standard output beside --dump; but a run may renew the checkpoint from which it was
+ * resumed. EXIT_USAGE. */
 bool files_check(const struct options *options, struct error *error);
 
-/* The same for one more file that is read. */
+/* The same for one more file to read. */
 bool files_check_input(const struct options *options, const char *path,
                        struct error *error);
 

@@ -1,7 +1,7 @@
-/* Memory: the physical pages, or the lowest limit of the control groups that the process
- * is in (of either version; each counts, up to the outermost), and what ulimit leaves of
- * the address space. Free memory is no measure: it changes from moment to moment, and
- * most of the memory in use is the cache of files. */
+/* Memory: the physical pages, or the lowest limit of the control groups of the process
+ * (of either version; each counts, up to the outermost), and what ulimit leaves of the
+ * address space. Free memory is no measure: it changes from moment to moment, and most of
+ * the memory in use is the cache of files. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ static int64_t read_limit(const char *path)
     return number;
 }
 
-/* Returns the lowest limit of the group "/OUTER/INNER" and those around it. */
+/* Returns the lowest limit of the group "/OUTER/INNER" and the groups around. */
 static int64_t group_limit(const char *root, const char *folder, const char *name,
                            char *group)
 {
@@ -50,7 +50,7 @@ static int64_t group_limit(const char *root, const char *folder, const char *nam
 }
 
 /* A line of /proc/self/cgroup is NUMBER:CONTROLLERS:GROUP, without controllers in version
- * 2. In a container the folder is that of the container, and GROUP may not be in it. */
+ * 2. In a container the folder belongs to the container, and may lack GROUP. */
 int64_t machine_groups(const char *root)
 {
     char path[LINE], line[LINE], none[1] = "";

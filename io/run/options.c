@@ -1,7 +1,7 @@
 /* The command line.
  *
- * Options are a table: name, words of the help, the function that sets the field in
- * struct options, and its range. Parser and --help are made of it; tests/52-words.sh
+ * Options are a table: name, words of the help, the function to set the field in struct
+ * options, and its range. Parser and --help are made of this table; tests/52-words.sh
  * compares the man page with the help. */
 #include "io/run/options.h"
 
@@ -19,9 +19,9 @@ struct argument;
 
 struct option {
     const char *name;
-    const char *value;   /* as the help calls it; "" of a flag */
+    const char *value;   /* name in the help; "" of a flag */
     const char *help;    /* a few words, the default in brackets; of a refused option, the
-                            command that does its work */
+                            command for its work */
     bool (*set)(const struct argument *argument); /* NULL: refused */
     size_t offset;       /* of the field in struct options */
     double low, high;    /* inclusive range of a number */
@@ -31,7 +31,7 @@ struct option {
 /* An option on the command line, on its way to its field. */
 struct argument {
     const struct option *option;
-    const char *value; /* that of an option that is a flag is not looked at */
+    const char *value; /* not looked at for a flag */
     struct options *options;
     void *field; /* the option's, of the options */
     struct error *error;
@@ -269,8 +269,8 @@ static bool set_bytes(const struct argument *a)
     return true;
 }
 
-/* Sets rays and pixels: N, "pixels", or both as "N,pixels". Without N it is the default,
- * whatever was given before. */
+/* Sets rays and pixels: N, "pixels", or both as "N,pixels". Without N the number is the
+ * default, whatever was given before. */
 static bool set_gather(const struct argument *a)
 {
     static const char PIXELS[] = "pixels";
@@ -447,7 +447,7 @@ static void set_defaults(struct options *options)
     options->two_sided = options->two_sided || options->two_sided_lamps;
 }
 
-/* Returns a view that no picture belongs to, or NULL. */
+/* Returns a view without a picture, or NULL. */
 static const char *find_idle_view(const struct options *options)
 {
     for (int view = 0; view < options->view_count; view++)
@@ -469,7 +469,7 @@ static bool check_rules(const struct options *o, struct error *error)
                                         : NULL;
     const struct {
         bool broken;
-        const char *message, *name; /* the name is that of its %s */
+        const char *message, *name; /* the name for its %s */
     } rules[] = {
         {rays && !tree, "--final-gather goes with --linking tree", ""},
         {accurate && !tree, "--accuracy goes with --linking tree", ""},
@@ -618,7 +618,7 @@ const char *options_link_settings(const struct options *options)
     static const char *const NAMES[] = {
         "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--form-factor", NULL};
     describe_all(options, NAMES);
-    if (options->criterion.oracle == ORACLE_ERROR) /* visibility is refined by it, too */
+    if (options->criterion.oracle == ORACLE_ERROR) /* epsilon refines visibility, too */
         describe(options, "--epsilon");
     return settings;
 }
@@ -679,7 +679,7 @@ static int print_option(const struct option *option, int width, FILE *file)
     return length + fprintf(file, "%*s%s", gap, "", option->help);
 }
 
-/* Prints all options in two columns; one that is too wide has a line of its own. */
+/* Prints all options in two columns; an option too wide has a line of its own. */
 static void print_options(FILE *file)
 {
     enum { COLUMN = 40, CALL_LEFT = 14, CALL_RIGHT = 12 }; /* characters */

@@ -49,8 +49,8 @@ struct options {
     int width, height;        /* of --size; 0: those of the view */
     int samples;              /* samples x samples rays a pixel */
     bool pixels;              /* the final gather is done at each pixel, too */
-    int pixel_rays;           /* by this many rays at least; 0: by as many as a leaf has,
-                                 since --final-gather names them */
+    int pixel_rays;           /* by this many rays at least; 0: by as many as for a leaf,
+                                 as given by --final-gather */
     enum dump dump;
     enum show show;
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
@@ -68,22 +68,22 @@ struct options {
 };
 
 /* Reads the arguments; the strings stay those of argv. Release with options_free(), also
- * after a failure. Errors: one line that names the wrong argument, EXIT_USAGE. */
+ * after a failure. Errors: one line naming the wrong argument, EXIT_USAGE. */
 bool options_parse(struct options *options, int argc, char **argv, struct error *error);
 void options_free(struct options *options);
 
-/* Return the settings that a link cache or a checkpoint is bound to, as lines "--option
- * value" in a fixed order: those that determine the links of all pairs, or the coming
+/* Return the settings to which a link cache or a checkpoint is bound, as lines "--option
+ * value" in a fixed order: all that determine the links of all pairs, or the coming
  * passes. Outputs, ranks, memory and the limits of iteration (--tolerance,
- * --max-iterations) are not among them and may differ from run to run. Overwritten by the
- * next call. */
+ * --max-iterations) are no such settings and may differ from run to run. Overwritten by
+ * the next call. */
 const char *options_link_settings(const struct options *options);
 const char *options_run_settings(const struct options *options);
 
-/* Returns the settings of light that are not the defaults, as above. */
+/* Returns the settings of light other than the defaults, as above. */
 const char *options_light_settings(const struct options *options);
 
-/* True if the format is a mesh, false if it is a picture. */
+/* True if the format is a mesh, false for a picture. */
 bool format_is_mesh(enum output_format format);
 
 /* True if its colours are 8-bit codes, which --exposure changes. */
@@ -99,14 +99,14 @@ bool target_refuse(const char *argument, struct error *error);
  * one. */
 bool options_show(const struct options *options, int view);
 
-/* Returns those of `names`, with a NULL behind the last, that the command line has,
+/* Returns the options of the command line among `names` (with a NULL behind the last),
  * joined by commas; an empty text if there are none. Overwritten by the next call. */
 const char *options_given(const struct options *options, const char *const *names);
 
-/* Returns an option that the command line has and `names` have not, or NULL. */
+/* Returns an option of the command line not in `names`, or NULL. */
 const char *options_other(const struct options *options, const char *const *names);
 
-/* Prints the text of --help, or the part of it on an option, with its range. */
+/* Prints the text of --help, or the part on an option, with its range. */
 void options_print_help(const char *option, FILE *file);
 
 #endif

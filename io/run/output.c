@@ -6,12 +6,12 @@
  * are brought to the disk. A symbolic link is followed first, so that its target is
  * replaced, or made, and the link stays.
  *
- * A device, a pipe or an open descriptor has no place beside it. Its bytes wait in memory
- * until they are whole; only then is it opened, so a named pipe is opened once, when
+ * A device, a pipe or an open descriptor has no place for a file beside it. All bytes
+ * wait in memory; only then the stream is opened, so a named pipe is opened once, when
  * there is something to read. Neither opening nor writing waits without looking whether
- * the program is asked to stop: a pipe may have no reader, or one that sleeps. A
- * descriptor is duplicated, not opened anew: under a launcher it may be a socket, and
- * where it is a file, the bytes in it stay. */
+ * the program is asked to stop: a pipe may have no reader, or a sleeping one. A
+ * descriptor is duplicated, not opened anew: under a launcher it may be a socket, and in
+ * a file the bytes before stay. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <fcntl.h>
@@ -61,7 +61,7 @@ bool output_is_stream(const char *path)
     return stream;
 }
 
-/* True if it can be written, as far as can be told without opening it. Sets errno. */
+/* True if a stream can be written, as far as can be told without opening. Sets errno. */
 static bool takes_bytes(const char *path)
 {
     int descriptor = place_descriptor(path);
@@ -73,7 +73,7 @@ static bool takes_bytes(const char *path)
     return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
 }
 
-/* Opens a stream; a named pipe when it has a reader. Returns -1 and sets errno on an
+/* Opens a stream; a named pipe when there is a reader. Returns -1 and sets errno on an
  * error, and when the program is asked to stop. */
 static int open_stream(const char *path)
 {
@@ -95,8 +95,8 @@ static int open_stream(const char *path)
     }
 }
 
-/* Writes pieces that a pipe takes at once when it takes a byte. Returns false and sets
- * errno on an error, and when the program is asked to stop. */
+/* Writes pieces small enough for any pipe ready for a byte. Returns false and sets errno
+ * on an error, and when the program is asked to stop. */
 static bool send_bytes(int file, const char *bytes, size_t size)
 {
     enum { PAUSE = 100 }; /* milliseconds */
@@ -130,8 +130,8 @@ static bool send_all(const struct output *output)
 
 /* --- files --- */
 
-/* Creates a file with the mode of the one that it is to replace. Returns NULL and sets
- * errno if it exists or cannot be made. */
+/* Creates a file with the mode of the one to replace. Returns NULL and sets errno if the
+ * file exists or cannot be made. */
 static FILE *open_new(const char *path, const char *old)
 {
     enum { MODES = 0777 };
@@ -189,15 +189,15 @@ static FILE *open_file(struct output *output)
                   : open_temporary(output);
 }
 
-/* Brings the bytes to the disk, if they are to stay. */
+/* Flushes the bytes, those of a file to the disk. */
 static bool flush(const struct output *output)
 {
     return fflush(output->file) == 0 &&
            (!output->temporary || fsync(fileno(output->file)) == 0);
 }
 
-/* Takes the whole output to its place; the name of a file to the disk as well, on systems
- * that can. */
+/* Takes the whole output to its place; the name of a file to the disk as well, where the
+ * system can. */
 static bool deliver(const struct output *output)
 {
     if (!output->temporary)

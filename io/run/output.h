@@ -1,4 +1,4 @@
-/* Output files, written beside their place and renamed when they are whole. */
+/* Output files, written beside their place and renamed when whole. */
 #ifndef IO_RUN_OUTPUT_H
 #define IO_RUN_OUTPUT_H
 
@@ -13,7 +13,7 @@ struct output {
     char *shown;     /* the path as given, for messages; owned */
     char *path;      /* the path behind symbolic links; owned */
     char *temporary; /* path of the new file; owned; NULL: a stream, whose bytes wait */
-    char *bytes;     /* [size] of a stream, once they are flushed; owned by the system */
+    char *bytes;     /* [size] of a stream, once flushed; owned by the system */
     size_t size;
 };
 
@@ -21,17 +21,17 @@ struct output {
  * the standard output; /dev/stderr; /dev/fd/N. */
 bool output_is_stream(const char *path);
 
-/* True if the file can be written: creates and removes the temporary file, so that a
- * wrong path is reported before the computation and not after it. A stream is not opened.
- * Errors: "PATH: cannot write: REASON", EXIT_FAILED. */
+/* True if the file can be written: creates and removes the temporary file, to report a
+ * wrong path before the computation and not after. A stream is not opened. Errors: "PATH:
+ * cannot write: REASON", EXIT_FAILED. */
 bool output_probe(const char *path, struct error *error);
 
 /* Opens a new file FILE.N.tmp, or phr.N.tmp where that name is too long, beside the file
- * that the path leads to, or memory for the bytes of a stream. Errors: as above. */
+ * at the end of the path, or memory for the bytes of a stream. Errors: as above. */
 bool output_open(struct output *output, const char *path, struct error *error);
 
-/* Puts the new file in the place of the old one, whose mode it has, and brings both to
- * the disk; or opens a stream, a named pipe when it has a reader, and writes to it. On
+/* Puts the new file, of the old one's mode, in its place, and brings file and name to the
+ * disk; or opens a stream, a named pipe when there is a reader, and writes the bytes. On
  * any write error so far, or if `error` is already set, the new file is removed, and the
  * old one or the stream stays as it was. Returns true if PATH has the new content.
  * A request to stop ends writing to a stream with an error. */
@@ -49,7 +49,7 @@ void output_write_note(struct output *output, const char *before);
 void output_uint32(struct output *output, uint32_t value);
 void output_float(struct output *output, float value);
 
-/* Write them most significant byte first. */
+/* Write binary numbers, most significant byte first. */
 void output_uint32_big(struct output *output, uint32_t value);
 void output_float_big(struct output *output, float value);
 

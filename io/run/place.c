@@ -1,8 +1,8 @@
-/* The place that a path stands for.
+/* The place behind a path.
  *
- * Paths are compared by the device and the inode that they lead to: neither "./m.ply" nor
- * a link hides a scene. Where there is no file yet, the folder, compared so, and the last
- * name are the place. Without POSIX the spelling is all there is. */
+ * Paths are compared by device and inode of their files: neither "./m.ply" nor a link
+ * hides a scene. Where there is no file yet, the folder, compared so, and the last name
+ * are the place. Without POSIX the spelling is all there is. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <sys/stat.h>
@@ -75,8 +75,7 @@ char *place_follow(const char *path)
     return NULL;
 }
 
-/* Fills the status of the file or descriptor that an output goes to. False if there is
- * none. */
+/* Fills the status of the file or descriptor of an output. False if there is none. */
 static bool find(const char *output, struct stat *status)
 {
     int descriptor = place_descriptor(output);

@@ -1,10 +1,10 @@
-/* The place that a path stands for, however it is spelt. */
+/* The place behind a path, however spelt. */
 #ifndef IO_RUN_PLACE_H
 #define IO_RUN_PLACE_H
 
 #include <stdbool.h>
 
-/* Returns the open descriptor that a path of an output stands for ("-", /dev/stdout,
+/* Returns the open descriptor meant by a path of an output ("-", /dev/stdout,
  * /dev/stderr, /dev/fd/N, /proc/self/fd/N), or -1. */
 int place_descriptor(const char *path);
 
@@ -12,19 +12,19 @@ int place_descriptor(const char *path);
 bool place_is_stdout(const char *path);
 
 /* Returns the path behind all symbolic links, whether there is a file or not; NULL, and
- * errno, if they go in a circle. To be freed with alloc_free(). */
+ * errno, if the links go in a circle. To be freed with alloc_free(). */
 char *place_follow(const char *path);
 
 /* Returns the folder of a file. To be freed with alloc_free(). */
 char *place_folder(const char *path);
 
-/* True if writing an output would change or replace a file that is read: they are one
- * file, by device and inode. */
+/* True if writing an output would change or replace an input: both are one file, by
+ * device and inode. */
 bool place_is_read(const char *output, const char *input);
 
 /* True if of two outputs the second would change or replace the first. Not so with
- * devices, such as /dev/null, and with two names of one file (hard links), which is then
- * no longer that of both. */
+ * devices, such as /dev/null, and with two names of one file (hard links), which then
+ * name two files. */
 bool place_is_written(const char *output, const char *other);
 
 #endif

@@ -3,13 +3,13 @@
  * On a terminal a line is rewritten with a carriage return, ten times a second at most,
  * and padded with blanks to the length of the line before it: no terminal database and no
  * escape sequences are needed. In a log, a line is written after half a minute without
- * one, so that a long phase does not look dead and a short one stays silent. Under
- * mpiexec stderr is a pipe on every rank: phr writes a log.
+ * one: a long phase does not look dead, and a short one stays silent. Under mpiexec
+ * stderr is a pipe on every rank: phr writes a log.
  *
- * Of a phase that takes long a line says after some seconds how long, and what could be
- * done, so that nobody waits in vain.
+ * Of a long phase a line says after some seconds how long, and what could be done, so
+ * nobody waits in vain.
  *
- * The percentage is that of rank 0. Work is balanced, so the others are about as far. */
+ * The percentage is rank 0's. Work is balanced, so the others are about as far. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <unistd.h>
@@ -28,8 +28,8 @@ static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 /* The time left is shown from this part of a stage and this many seconds on. */
 static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
 
-/* A phase is long that takes more seconds than this: of a run of a minute some phase is.
- * That is told with the first time left, or after so many seconds. */
+/* A phase of more seconds than this is long: in a run of a minute some phase is. The line
+ * comes with the first time left, or after so many seconds. */
 static const double LONG = 30.0, SECONDS_TO_TELL = 5.0;
 
 static bool stderr_is_terminal(void)
@@ -75,8 +75,8 @@ int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress
 
 static const char *told; /* the phase last said to take long, or NULL */
 
-/* Says once of a phase that it takes long, if it does. Looks are a quarter of the gather,
- * or less where they split much. */
+/* Says once how long a long phase takes. Looks are a quarter of the gather, or less with
+ * many splits. */
 static void tell_long(struct progress_view *view, double seconds)
 {
     static const char RAYS[] = "smaller --final-gather or a larger --epsilon";

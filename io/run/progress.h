@@ -19,9 +19,8 @@ struct progress_view {
     int width;                /* of the line on the terminal; 0: there is none */
 };
 
-/* Shows the progress from now on; without this call, ticks do nothing. Of a phase that
- * takes more than half a minute a line that stays says so early, and which options make
- * it shorter. */
+/* Shows the progress from now on; without this call, ticks do nothing. Of a phase of more
+ * than half a minute a lasting line says so early, with the options for a shorter one. */
 void progress_view_open(struct progress_view *view, double (*clock)(void));
 
 /* Removes the line. To be called before any other output on stderr. */

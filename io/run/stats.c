@@ -1,6 +1,6 @@
-/* Reporting a run. Keys of the JSON stand in one order, one a line, so that two files can
- * be compared with diff. Times and memory depend on the machine; "balance", "proxies",
- * "work", "exchanges", "messages" and "bytes" depend on the number of ranks alone. */
+/* Reporting a run. Keys of the JSON stand in one order, one a line, for comparison with
+ * diff. Times and memory depend on the machine; "balance", "proxies", "work",
+ * "exchanges", "messages" and "bytes" depend on the number of ranks alone. */
 #include "io/run/stats.h"
 
 #include <inttypes.h>

@@ -1,8 +1,8 @@
 /* Stored snapshots; the format is in io/run/store.h.
  *
- * Reading checks first that the counts agree with the size of the file, so allocations
- * stay within a small multiple of it; then the checksum, the settings and the scene; then
- * every number (rad/beyond/snapshot.c). The file is read twice, so that the links, by far
+ * Reading first checks the counts against the size of the file, so allocations stay
+ * within a small multiple of this size; then the checksum, the settings and the scene;
+ * then every number (rad/beyond/snapshot.c). The file is read twice: the links, by far
  * its largest part, need not fit into the memory of rank 0.
  *
  * The checksum finds accidents, not attacks. Rejected: a CRC for each section, which
@@ -120,7 +120,7 @@ static bool damaged(const struct store_reader *reader, const char *how,
     return error_set(error, EXIT_USAGE, "%s: damaged: %s", reader->path, how);
 }
 
-/* Reports a system's error, or the end of a file that has become shorter. */
+/* Reports a system's error, or the end of a shortened file. */
 static bool unreadable(const struct store_reader *reader, struct error *error)
 {
     return error_set(error, EXIT_USAGE, "%s: cannot read: %s", reader->path,
@@ -210,8 +210,9 @@ static bool check_hash(struct store_reader *reader, int64_t size, struct error *
     return hash == little_get64(chunk) || damaged(reader, "its checksum is wrong", error);
 }
 
-/* Names the last setting that differs: one that the default of another depends on stands
- * behind it. But one that only one of the runs has is named if it alone differs. */
+/* Names the last setting in which the runs differ: a setting stands behind others whose
+ * defaults it sets. But a setting of only one of the runs is named if no other
+ * differs. */
 static bool check_settings(struct store_reader *reader, int64_t bytes, const char *wanted,
                            struct error *error)
 {

@@ -34,7 +34,7 @@
 
 enum store_kind { STORE_LINKS, STORE_CHECKPOINT };
 
-/* Kind, settings and scene that a file is bound to. */
+/* Kind, settings and scene of a file. */
 struct store_terms {
     enum store_kind kind;
     const char *settings;            /* as in the file; borrowed */
@@ -68,8 +68,8 @@ struct store_reader {
     struct link_check check;
 };
 
-/* Opens a file, checks that it is whole and bound to these terms, and reads the part
- * before the links.
+/* Opens a file, checks that the file is whole and bound to these terms, and reads the
+ * part before the links.
  * Errors, EXIT_USAGE: "PATH: cannot read: REASON", "PATH: not a link cache", "PATH:
  * damaged ...", "PATH: made with OPTION, this run has OPTION", "PATH: made from another
  * scene". To be released with store_close(), also after an error. */
