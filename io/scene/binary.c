@@ -1,8 +1,8 @@
 /* Reading binary files.
  *
  * The file is read in chunks to its end and kept in memory. So the counts of a header can
- * be checked against the size before anything is allocated for them. The first chunk has
- * to begin with a magic of the format: reading /dev/zero ends there.
+ * be checked against the size before anything is allocated. The first chunk has to begin
+ * with a magic of the format: reading /dev/zero ends there.
  * Numbers are put together byte by byte, so the byte order of the machine does not
  * matter. */
 #include "io/scene/binary.h"

@@ -22,7 +22,7 @@ static double tangent(double x)
     return t;
 }
 
-/* True also if one of them is 0. */
+/* True also if one vector is 0. */
 static bool are_parallel(struct vec3 a, struct vec3 b)
 {
     return !(vec3_length(vec3_cross(vec3_unit(a), vec3_unit(b))) > 1e-9);
@@ -63,7 +63,7 @@ static bool read_size(const struct text *text, char *rest, struct camera *camera
     return true;
 }
 
-/* The required keywords that were read so far. */
+/* The required keywords read so far. */
 struct view_seen {
     bool eye, at, up;
 };

@@ -2,16 +2,15 @@
  *
  * `mtllib` lists names between blanks, but programs also write single names with blanks
  * in them. So the whole rest of the line is tried first, then its words, where a
- * backslash before a blank keeps a word together. A name is tried once, however often it
- * occurs.
+ * backslash before a blank keeps a word together. A name is tried once, however often
+ * named.
  *
- * Programs also write folders of the machine that they ran on, with either slash. Where
- * such a file does not exist, the file of the same last name beside the OBJ file is
- * taken. If only the folders have blanks, the line may as well be a list, and its words
- * are tried.
+ * Programs also write folders of their own machine, with either slash. Where such a file
+ * does not exist, the file of the same last name beside the OBJ file is taken. If only
+ * the folders have blanks, the line may as well be a list, and its words are tried.
  *
- * A scene may come from anybody, so it cannot name a pipe or a device, which would make
- * phr wait for ever. */
+ * A scene may come from anybody, so a pipe or a device, for which phr would wait for
+ * ever, is no library. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <sys/stat.h>
@@ -42,7 +41,7 @@ static const char *last_part(const char *name)
     return part;
 }
 
-/* A descriptor that is open already has no folder but the current one. */
+/* A descriptor already open has no folder but the current one. */
 static bool is_descriptor(const char *path)
 {
     return strcmp(path, "/dev/stdin") == 0 || strncmp(path, "/dev/fd/", 8) == 0;
@@ -74,8 +73,8 @@ static bool read_file(const struct lookup *lookup, const char *name, bool *found
     return good;
 }
 
-/* Reads the library `name`, unless it has been tried before. Sets `*missing` if the file
- * does not exist and was not tried before. */
+/* Reads the library `name`, unless tried before. Sets `*missing` if the file does not
+ * exist and was not tried before. */
 static bool try_name(const struct lookup *lookup, const char *name, bool *missing)
 {
     *missing = false;

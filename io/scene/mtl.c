@@ -2,16 +2,16 @@
  *
  * Names used by faces and names defined are in one table, and definitions are looked up
  * after the last line: a library may come after the faces that use its materials. A name
- * that nobody defines keeps the neutral grey with which it entered the table.
+ * without a definition keeps its first colour in the table, neutral grey.
  *
- * Ke is not in the original description of the format, but modelling programs write it
+ * Ke is not in the original description of the format, but modelling programs write Ke
  * for lights. A material with Ke alone is a black light: grey would be a reflectance that
  * nobody wrote down. A texture that is not found is neutral grey unless Kd says another
  * colour: exporters write Kd 1 1 1 beside map_Kd, and a room of white walls would be
  * nearly a furnace. So is a Kd as `spectral` or `xyz`: the reflectance with an X, Y and Z
- * depends on the light that they were taken under, which no file says. Such a Ke has no
- * neutral value, and is 0. Where d and Tr contradict each other, d counts: programs
- * disagree on the meaning of Tr 1.
+ * depends on the light of the measurement, which no file says. Such a Ke has no neutral
+ * value, and is 0. Where d and Tr contradict each other, d counts: programs disagree on
+ * the meaning of Tr 1.
  *
  * Kd and Ke themselves are read strictly: a negative or misspelt number would give a
  * wrong picture without a message. */
@@ -60,7 +60,7 @@ static bool read_numbers(const struct text *text, char *word, char *rest,
     return true;
 }
 
-/* A reflectance that is not read is grey, unless there is one in numbers. */
+/* A reflectance not read is grey, unless there is one in numbers. */
 static void take_neutral(struct mtl_entry *entry)
 {
     if (!entry->has_kd)
@@ -95,7 +95,7 @@ static bool read_colour(const struct text *text, const char *keyword, char *rest
     return true;
 }
 
-/* Returns the number of the material that a newmtl line begins. */
+/* Returns the number of the material begun by a newmtl line. */
 static int32_t start_material(struct mtl_table *table, char *rest)
 {
     const char *name = text_trim(rest);
@@ -125,8 +125,8 @@ static char *next_word(char *at)
     return at + strspn(at, " \t");
 }
 
-/* Returns the number of the picture that a line names behind its options, from 1; 0 if it
- * names none. An option is a word, a value, and further numbers. */
+/* Returns the number of the picture named by a line behind its options, from 1; 0: none.
+ * An option is a word, a value, and further numbers. */
 static int32_t find_map(struct mtl_table *table, const struct text *text, char *rest)
 {
     char *name = text_trim(rest);
@@ -146,8 +146,8 @@ static int32_t find_map(struct mtl_table *table, const struct text *text, char *
     return number;
 }
 
-/* True if nothing is lost without the statement: all its numbers are in a range that
- * diffuse surfaces have, or it only shapes the highlights of another statement. */
+/* True if nothing is lost without the statement: all its numbers are in the range of
+ * diffuse surfaces, or the statement only shapes the highlights of another statement. */
 static bool is_plain(const char *keyword, char *rest)
 {
     static const struct {
@@ -168,7 +168,7 @@ static bool is_plain(const char *keyword, char *rest)
     return plain;
 }
 
-/* `*current` is the number of the material that the line belongs to, or negative. */
+/* `*current` is the number of the material of the line, or negative. */
 static bool read_line(struct mtl_table *table, const struct text *text, char *line,
                       int32_t *current, struct error *error)
 {

@@ -16,9 +16,9 @@
 #include "io/scene/text.h"
 
 struct mtl_entry {
-    struct material material; /* neutral grey until it is defined */
-    bool defined;             /* a library defines it */
-    bool used;                /* a face has it; set by the caller */
+    struct material material; /* neutral grey until defined */
+    bool defined;             /* by a library */
+    bool used;                /* by a face; set by the caller */
     bool transparent;         /* d below 1 or, without d, Tr above 0 */
     int32_t maps[2];          /* pictures of Kd and Ke: numbers from 1; 0: none */
     bool unread;              /* has Kd or Ke as spectral or xyz */
@@ -26,38 +26,38 @@ struct mtl_entry {
     bool has_d;               /* d was read, which overrides Tr */
 };
 
-/* The materials that are defined or asked for. Starts as {0}. */
+/* The materials defined or asked for. Starts as {0}. */
 struct mtl_table {
     struct text_names names;   /* material i has the name names.name[i] */
     struct mtl_entry *entries; /* [names.count] */
     int64_t capacity;          /* of entries */
     int64_t nameless;          /* newmtl lines without a name: their name is "" */
     struct text_names maps;    /* paths of pictures */
-    struct text_names passed;  /* keywords of statements that are passed over */
+    struct text_names passed;  /* keywords of statements passed over */
 };
 
-/* The mean colour of a picture in a file, 1 for white. False with an error if it cannot
- * be found. */
+/* The mean colour of a picture in a file, 1 for white. False with an error if there is
+ * none. */
 typedef bool mtl_mean(const char *path, struct rgb *mean, struct error *error);
 
 /* Returns the number of the material `name`. A new name is added, not yet defined. */
 int32_t mtl_find(struct mtl_table *table, const char *name);
 
-/* Adds the materials of the library `path`. A material without Kd is black, or grey if it
- * has a Kd that is not read; one without Ke emits nothing; of two
- * definitions the later one counts. If the file cannot be read, `*found` is false and the
- * table unchanged, without an error.
+/* Adds the materials of the library `path`. A material without Kd is black, or grey if
+ * its Kd is not read; one without Ke emits nothing; of two definitions the later one
+ * counts. If the file cannot be read, `*found` is false and the table unchanged, without
+ * an error.
  * Errors: "FILE:LINE: REASON"; EXIT_USAGE. */
 bool mtl_read(struct mtl_table *table, const char *path, bool *found,
               struct error *error);
 
-/* Does the same with a text in memory. Its lines are used up; it stays the caller's. */
+/* Does the same with a text in memory. The text stays the caller's, its lines used up. */
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
 
-/* Multiplies Kd and Ke of the materials in use, 1 where they are not given, by the means
- * of their pictures. Where one cannot be found, Kd stays as it is, or is halved if it is
- * white, and Ke stays. `mean_of` may be NULL: none can be found. Adds these to `lost`,
- * and the paths of all to `files` unless it is NULL. */
+/* Multiplies Kd and Ke of the materials in use, 1 where not given, by the means of their
+ * pictures. Without a mean, Kd stays, or is halved if white, and Ke stays. `mean_of` may
+ * be NULL: there is no mean. Adds the pictures without a mean to `lost`, and the paths of
+ * all to `files` unless NULL. */
 void mtl_take_maps(struct mtl_table *table, mtl_mean *mean_of, struct text_missing *lost,
                    struct text_names *files);
 

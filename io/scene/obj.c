@@ -97,7 +97,7 @@ static void vectors_add(struct obj_vectors *vectors, struct vec3 vector)
     vectors->at[vectors->count++] = vector;
 }
 
-/* Counts the line as one that is passed over, in whole or in part. */
+/* Counts the line as passed over, in whole or in part. */
 static bool pass_over(struct obj_reader *reader)
 {
     if (reader->repairs->unknown_lines++ == 0)
@@ -141,7 +141,7 @@ static bool read_vertex(struct obj_reader *reader, char *rest)
     return take_colour(reader, rest);
 }
 
-/* Returns the direction of three numbers, of length 1, or 0 if they have none. */
+/* Returns the direction of three numbers, of length 1, or 0 without any. */
 static struct vec3 parse_direction(char *rest)
 {
     double value[3];
@@ -184,7 +184,7 @@ static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal,
     return *word == '\0';
 }
 
-/* Returns the place in a list of `count` that an index of this line means, or a negative
+/* Returns the place in a list of `count` meant by an index of this line, or a negative
  * number. Index 0 would be the place behind the last. */
 static int32_t find_place(int64_t index, int64_t count)
 {
@@ -391,7 +391,7 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
     return count;
 }
 
-/* Numbers the groups that have faces, by their first faces, and names them in the
+/* Numbers the groups with faces, by their first faces, and names the groups in the
  * scene. */
 static void make_groups(const struct obj_reader *reader, struct scene *scene)
 {

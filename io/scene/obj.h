@@ -3,12 +3,12 @@
  * Understood: v (three coordinates; three numbers behind them are a colour, one is a
  * weight and skipped), vn (for smooth shading), f (v, v/vt, v//vn, v/vt/vn, negative
  * indices, polygons), usemtl, mtllib, o, g. An o or g line puts the faces up to the next
- * such line into the group that the rest of the line names; faces before any such line,
- * or behind one without a name, are in the group "default". Groups are numbered by their
- * first faces. A face whose corners all have colours has the mean of them in place of Kd,
- * as a linear reflectance (io/scene/ply.h). Points, lines, texture coordinates and
- * settings of programs are skipped. Other keywords, such as those of free-form surfaces,
- * are skipped and counted. Lines may end in LF or CRLF and go on after a backslash. */
+ * such line into the group named by the rest of the line; faces before any such line, or
+ * behind one without a name, are in the group "default". Groups are numbered by their
+ * first faces. A face whose corners all have colours has their mean in place of Kd, as a
+ * linear reflectance (io/scene/ply.h). Points, lines, texture coordinates and settings of
+ * programs are skipped. Other keywords, such as those of free-form surfaces, are skipped
+ * and counted. Lines may end in LF or CRLF and go on after a backslash. */
 #ifndef IO_SCENE_OBJ_H
 #define IO_SCENE_OBJ_H
 
@@ -30,23 +30,23 @@ struct obj_repairs {
     int64_t nameless;              /* newmtl lines without a name, as of usemtl */
     int64_t textured;              /* used materials with pictures: of one colour */
     struct text_missing textures;  /* pictures of these whose mean is not found */
-    int64_t passed_count;          /* keywords of materials that are passed over */
+    int64_t passed_count;          /* keywords of materials passed over */
     char passed[200];              /* these keywords */
     int64_t unread;                /* used materials with Kd or Ke as spectral or xyz */
     int64_t unknown_lines;         /* with unknown keywords, or numbers: skipped */
     long first_unknown;            /* number of the first such line */
 };
 
-/* Reads `path` and the material libraries that it names (relative to it).
+/* Reads `path` and the material libraries of its mtllib lines (relative to `path`).
  * Returns a scene before scene_prepare() (positions in input units), or NULL with `error`
  * set to "FILE:LINE: REASON" (EXIT_USAGE).
- * Errors: a file that cannot be read or has no faces, which may be because it looks like
- * another format; malformed numbers, NaN and infinities, indices out of range, faces with
- * fewer than three corners, negative reflectance or emission. */
+ * Errors: a file that cannot be read or has no faces (or seems to be of another format);
+ * malformed numbers, NaN and infinities, indices out of range, faces with fewer than
+ * three corners, negative reflectance or emission. */
 struct scene *obj_read(const char *path, struct obj_repairs *repairs,
                        struct error *error);
 
-/* Does the same with an open file, which it does not close. */
+/* Does the same with an open file, which stays open. */
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error);
 

@@ -15,7 +15,7 @@ static uint64_t mix(uint64_t sum, double value)
     return sum ^ sum >> 32;
 }
 
-/* Returns the slot of a material, or the empty slot where it belongs. */
+/* Returns the slot of a material, or the empty slot for a new one. */
 static int32_t *find_slot(const struct palette *palette, const struct material *material)
 {
     uint64_t mask = (uint64_t)palette->slot_count - 1, at = 0;

@@ -1,4 +1,4 @@
-/* Different materials, numbered as they come up. */
+/* Different materials, numbered in order of appearance. */
 #ifndef IO_SCENE_PALETTE_H
 #define IO_SCENE_PALETTE_H
 
@@ -15,7 +15,7 @@ struct palette {
     int64_t slot_count;         /* a power of two, at least twice count */
 };
 
-/* Returns the number of the material, which is added if it is new. Pre: it is finite. */
+/* Returns the number of the material, added if new. Pre: all its values are finite. */
 int32_t palette_add(struct palette *palette, const struct material *material);
 void palette_free(struct palette *palette);
 

@@ -2,11 +2,11 @@
  *
  * Faces may come before their vertices. So faces are kept as numbers of corners and
  * become triangles after the last record; their corners are checked at once, against the
- * number of vertices that the header declares.
+ * number of vertices in the header.
  *
  * Colours are taken as linear reflectances. Modellers may mean sRGB, but the format
- * cannot declare it; decoding would falsify every mesh made for computing, and 128 would
- * no longer mean one half. Alpha is skipped: surfaces are opaque. */
+ * cannot say so; decoding would falsify every mesh made for computing, and 128 would no
+ * longer mean one half. Alpha is skipped: surfaces are opaque. */
 #include "io/scene/ply.h"
 
 #include <stdio.h>
@@ -46,7 +46,7 @@ struct reader {
     struct error *error;
 };
 
-/* True if there is an element and it has the three properties from `first` on. */
+/* True if there is an element with the three properties from `first` on. */
 static bool has_three(const struct ply_element *element, enum ply_field first)
 {
     return element && element->type_of[first] != PLY_NONE &&
@@ -63,7 +63,7 @@ static enum ply_field colours_of(const struct ply_element *element)
     return PLY_FIELDS;
 }
 
-/* Returns the value of a colour that means a reflectance of 1. */
+/* Returns the value of a colour for a reflectance of 1. */
 static double unit_of(enum ply_type type)
 {
     return type >= PLY_FLOAT                         ? 1.0
@@ -178,7 +178,7 @@ static bool read_faces(struct reader *reader, const struct ply_element *element)
     return true;
 }
 
-/* True if there is an element of faces or strips and it has their corners. */
+/* True if there is an element of faces or strips with their corners. */
 static bool has_corners(const struct ply_element *element)
 {
     return element && element->count > 0 &&

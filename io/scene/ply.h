@@ -17,8 +17,8 @@
 #include "geom/scene.h"
 #include "io/scene/plyfile.h"
 
-/* True if an open file is to be read as PLY: its name ends in .ply; or it does not end in
- * .obj, and the file begins as a PLY file does. */
+/* True if an open file is to be read as PLY: its name ends in .ply; or its name does not
+ * end in .obj, and the file begins as a PLY file does. */
 bool ply_is_meant(const struct source *source);
 
 /* Reads an open file. Returns a scene before scene_prepare() (positions in input units),
@@ -29,7 +29,7 @@ bool ply_is_meant(const struct source *source);
  * corners, a corner out of range, a negative colour or emission. */
 struct scene *ply_read(struct source *source, struct error *error);
 
-/* Does the same with a file whose header is read, which it does not close. */
+/* Does the same with a file whose header is read, which stays open. */
 struct scene *ply_of_file(struct ply_file *file, struct error *error);
 
 #endif

@@ -10,9 +10,8 @@
  * many shifts all later ones, and gives a wrong scene without a message. For the same
  * reason only blanks may follow the last record.
  *
- * Values of properties that are not read may be NaN; all others have to be finite. The
- * types of the header hold for binary files only: a text file may write 300 for a
- * uchar. */
+ * Values of properties not read may be NaN; all others have to be finite. The types of
+ * the header hold for binary files only: a text file may write 300 for a uchar. */
 #include "io/scene/plyfile.h"
 
 #include <math.h>
@@ -29,7 +28,7 @@ static const struct {
              {"ushort", "uint16", 2}, {"int", "int32", 4},      {"uint", "uint32", 4},
              {"float", "float32", 4}, {"double", "float64", 8}};
 
-/* Properties that are read: names in the order of their fields. */
+/* Properties read: names in the order of their fields. */
 static const struct {
     enum ply_kind kind;
     const char *names;
@@ -304,7 +303,7 @@ static double decode(const char *at, enum ply_type type, bool big_endian)
     return (double)binary_integer(at, size, big_endian);
 }
 
-/* Reads the next value of the record; skips it if `value` is NULL. */
+/* Reads the next value of the record, or skips one if `value` is NULL. */
 static bool take(struct ply_file *file, enum ply_type type, double *value,
                  struct error *error)
 {

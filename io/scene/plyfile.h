@@ -4,7 +4,7 @@
  * Understood: `format`, `element`, `property`, `property list`, `comment`, `obj_info`;
  * the types char uchar short ushort int uint float double and their other names, int8 ...
  * float64. Lines of the header end in LF, CRLF or CR, as its first one does. Properties
- * without a field below, and elements that the caller does not read, are skipped by their
+ * without a field below, and elements not read by the caller, are skipped by their
  * size. */
 #ifndef IO_SCENE_PLYFILE_H
 #define IO_SCENE_PLYFILE_H
@@ -19,10 +19,10 @@
 enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_STRIPS, PLY_MATERIAL, PLY_ROOT_CORNER,
                 PLY_SOLUTION, PLY_OTHER };
 
-/* Properties that are read, of one kind of elements or of several. */
+/* Properties read, of one kind of elements or of several. */
 enum ply_field {
     PLY_X, PLY_Y, PLY_Z,
-    PLY_RED, PLY_GREEN, PLY_BLUE, /* colours, and the other names that they have */
+    PLY_RED, PLY_GREEN, PLY_BLUE, /* colours, and their other names */
     PLY_R, PLY_G, PLY_B,
     PLY_DIFFUSE_RED, PLY_DIFFUSE_GREEN, PLY_DIFFUSE_BLUE,
     PLY_COLOR_0, PLY_COLOR_1, PLY_COLOR_2,
@@ -54,8 +54,8 @@ struct ply_element {
     int64_t property_count;
     int64_t record_size;      /* smallest size of a record, with empty lists, bytes */
     bool has_list;
-    long line;             /* of the header, where it is declared */
-    enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE: it lacks the property */
+    long line;             /* of its declaration in the header */
+    enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE: lacks the property */
 };
 
 struct ply_header {
@@ -70,7 +70,7 @@ struct ply_file {
     bool ascii, big_endian;
     char line_end;                   /* the last character of a line */
     struct ply_header header;
-    struct text_names passed;        /* elements and properties that are not read */
+    struct text_names passed;        /* elements and properties not read */
     double value[PLY_FIELDS];        /* of the current record */
     int32_t *corners;                /* [corner_count] of the current record, >= 0, or -1
                                       * in a strip */
@@ -80,7 +80,7 @@ struct ply_file {
     long line;                       /* number of the current text line */
     char *rest;                      /* unread part of the current text line */
     int64_t long_lines;              /* with more values than the header says, so far */
-    long first_long;                 /* number of the first of them */
+    long first_long;                 /* number of the first such line */
 };
 
 /* Reads an open file and its header. To be closed also after an error.

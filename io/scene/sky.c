@@ -1,8 +1,8 @@
 /* The sky is the upper half of an octahedron whose faces are cut in four LEVELS times,
- * its corners moved to a ball: all facets look about as large. As they have one radiosity
- * and hide each other nowhere, only the edge of the sky matters. At its own height that
- * is the horizon; from a height h the sky begins h / radius below it, and an upright face
- * gets too much by at most 1.3 of this. */
+ * its corners moved to a ball: all facets look about as large. As facets have one
+ * radiosity and hide each other nowhere, only the edge of the sky matters. At the height
+ * of the edge this is the horizon; from a height h the sky begins h / radius below the
+ * horizon, and an upright face gets too much by at most 1.3 of this. */
 #include "io/scene/sky.h"
 
 #include "io/scene/subject.h"

@@ -4,9 +4,9 @@
 
 #include "geom/scene.h"
 
-/* Adds a sky of this radiosity, W/m^2, to a scene that is not prepared yet: a dome of
- * facets, far away, which shine inwards, down to the height of the lowest point. They
- * have the last numbers of the input triangles. */
+/* Adds a sky of this radiosity, W/m^2, to a scene not prepared yet: a dome of facets, far
+ * away, shining inwards, down to the height of the lowest point. The facets have the last
+ * numbers of the input triangles. */
 void sky_add(struct scene *scene, struct rgb radiosity);
 
 #endif

@@ -1,8 +1,8 @@
 /* Reading files once.
  *
- * A pipe gives its bytes to whoever opens it first, and ends when that one closes it. So
- * the first bytes, by which a format is recognised, are kept for the reader of that
- * format. Rejected: ungetc(), for which C promises one byte. */
+ * A pipe gives its bytes to its first reader, and ends when this reader closes. So the
+ * first bytes, by which a format is recognised, are kept for the reader of that format.
+ * Rejected: ungetc(), for which C promises one byte. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <sys/stat.h>

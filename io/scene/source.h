@@ -1,4 +1,4 @@
-/* Files that are read once, from their beginnings to their ends, so that pipes work. */
+/* Files read once, from their beginnings to their ends, so that pipes work. */
 #ifndef IO_SCENE_SOURCE_H
 #define IO_SCENE_SOURCE_H
 
@@ -23,12 +23,12 @@ struct source {
 bool source_open(struct source *source, const char *path, struct error *error);
 void source_close(struct source *source);
 
-/* Does the same with a file that another one names: a folder, a pipe or a device is
- * refused, as reading it may never end. */
+/* Does the same with a file named by another: a folder, a pipe or a device is refused, as
+ * reading may never end. */
 bool source_open_regular(struct source *source, const char *path, struct error *error);
 
-/* Does the same with an open file, which it takes over; NULL: one that fopen() could not
- * open. */
+/* Does the same with an open file, and takes the file over; NULL: fopen() could not open
+ * one. */
 bool source_of_file(struct source *source, const char *path, FILE *file,
                     struct error *error);
 

@@ -1,22 +1,22 @@
 /* What is looked at, by the shapes alone.
  *
- * OBJ does not define the axis that is up. Lamps shine mostly down, skies, too: if they
- * shine along -y, y is up, along -z, z. Twins do not count, with which all of them would
- * shine both ways. Else (tubes, windows, globes, no lamps) z is up if there is a floor
- * across it, and either none across y, or the scene is lowest along z, as rooms are. In
- * all other cases y is up, as in most files.
+ * OBJ does not define the axis that is up. Lamps shine mostly down, skies, too: if along
+ * -y, y is up, if along -z, z. Twins do not count, with which all lamps would shine both
+ * ways. Else (tubes, windows, globes, no lamps) z is up if there is a floor across z, and
+ * either none across y, or the scene is lowest along z, as rooms are. In all other cases
+ * y is up, as in most files.
  *
- * Things are what neither emits nor is ground, the level faces at the bottom: a plain may
- * be much larger than what stands on it. Of it a strip around the things is looked at,
- * half as wide as they are high, for their shadows. Lamps are looked at, too, unless they
- * enclose the things, on all sides but the bottom: then they are the sky. */
+ * Things are all faces but lamps and ground, the level faces at the bottom: a plain may
+ * be much larger than the things on it. Of the ground a strip around the things is looked
+ * at, half as wide as the things are high, for their shadows. Lamps are looked at, too,
+ * unless enclosing the things, on all sides but the bottom: then lamps are the sky. */
 #include "io/scene/subject.h"
 
-static const double DOWN = 0.3;   /* share of a light that shines straight down; of a
-                                   * hemisphere 1/2 */
+static const double DOWN = 0.3;   /* share of a light going straight down; of a hemisphere
+                                   * 1/2 */
 static const double LEVEL = 0.99; /* cosine of the slope of ground */
 static const double FLAT = 0.01;  /* height of ground, relative to the scene's */
-static const double COVER = 0.5;  /* share of a box that a floor covers */
+static const double COVER = 0.5;  /* share of a box covered by a floor */
 static const double STRIP = 0.5;  /* width of the strip of ground, relative to the height
                                    * of the things */
 
@@ -50,7 +50,7 @@ static bool is_floor(const struct scene *scene, int32_t i, const struct extent *
 
 enum kind { LAMPS, THINGS, REST }; /* REST: things and ground */
 
-/* Returns the box of the triangles of a kind. `rest`: that of REST, for THINGS. */
+/* Returns the box of the triangles of a kind. `rest`: the box of REST, for THINGS. */
 static struct extent box_of(const struct scene *scene, enum kind kind,
                          const struct extent *rest, int up)
 {

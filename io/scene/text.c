@@ -8,10 +8,10 @@
  *
  * Numbers are rounded correctly. Almost all numbers in files are an integer below 2^53
  * times or over a power of ten up to 10^22; a double holds both exactly, so one operation
- * rounds once, in a fifth of the time of strtod. The others go to strtod. It also takes
- * NaN, infinity and hexadecimal numbers, so the characters are checked first; it follows
- * the locale, which the program never sets. Rejected: sscanf, whose behaviour on overflow
- * is undefined.
+ * rounds once, in a fifth of the time of strtod. The others go to strtod, which also
+ * takes NaN, infinity and hexadecimal numbers, so the characters are checked first, and
+ * follows the locale, which the program never sets. Rejected: sscanf, whose behaviour on
+ * overflow is undefined.
  *
  * Names are found by hashing (linear probing): searching a list takes time quadratic in
  * the number of materials, and a file can have a million. */
@@ -172,7 +172,7 @@ char *text_trim(char *rest)
     return first;
 }
 
-/* A decimal number as it is written: +-digits * 10^exponent. */
+/* A decimal number as written: +-digits * 10^exponent. */
 struct decimal {
     bool negative;
     uint64_t digits; /* above DIGITS_MAX: not exact */
@@ -190,7 +190,7 @@ static const char *scan_digits(const char *at, struct decimal *decimal)
     return at;
 }
 
-/* Reads the word as a decimal number; false if it is none. */
+/* Reads the word as a decimal number; false for any other word. */
 static bool scan_decimal(const char *word, struct decimal *decimal)
 {
     *decimal = (struct decimal){.negative = *word == '-'};
@@ -287,7 +287,7 @@ char *text_path_beside(const char *path, const char *name)
     return joined;
 }
 
-/* Returns the slot of a name, or the empty slot where it belongs. */
+/* Returns the slot of a name, or the empty slot for a new one. */
 static int32_t *find_slot(const struct text_names *names, const char *name)
 {
     uint64_t mask = (uint64_t)names->slot_count - 1;

@@ -1,5 +1,5 @@
 /* Text files: whole in memory, handed out in logical lines, words and numbers; and sets
- * of names that occur in them. */
+ * of names in such files. */
 #ifndef IO_SCENE_TEXT_H
 #define IO_SCENE_TEXT_H
 
@@ -9,8 +9,8 @@
 #include "geom/error.h"
 #include "io/scene/source.h"
 
-/* The largest magnitude of an input number: squares and products of three of them do not
- * overflow. */
+/* The largest magnitude of an input number: squares and products of three such numbers do
+ * not overflow. */
 #define TEXT_NUMBER_MAX 1e100
 
 struct text {
@@ -31,7 +31,7 @@ struct text {
 bool text_read(struct text *text, const char *path, struct error *error);
 void text_free(struct text *text);
 
-/* Does the same with an open file, which it does not close. */
+/* Does the same with an open file, which stays open. */
 bool text_of_source(struct text *text, struct source *source, struct error *error);
 
 /* Returns the next logical line, without its end, or NULL behind the last one. Lines end
@@ -40,11 +40,11 @@ bool text_of_source(struct text *text, struct source *source, struct error *erro
  * Lives as long as the text. */
 char *text_line(struct text *text);
 
-/* Cuts the next word off `*rest`, which moves behind it, or returns NULL at the end of
- * the line or at a word that starts with '#'. */
+/* Cuts the next word off `*rest`, which moves on behind, or returns NULL at the end of
+ * the line or at a word starting with '#'. */
 char *text_word(char **rest);
 
-/* Returns the text without the blanks around it; cut in place. */
+/* Returns the text without the blanks around, cut in place. */
 char *text_trim(char *rest);
 
 /* True if the whole word is a decimal number in the range of a double, such as 1, +1,
@@ -57,7 +57,7 @@ bool text_is_number(const char *word, double *value);
 bool text_number(const struct text *text, const char *word, double *value,
                  struct error *error);
 
-/* Reads a decimal integer at `*cursor` and moves it behind. False if there is none. A
+/* Reads a decimal integer at `*cursor`, which moves on behind. False if there is none. A
  * value of more than 18 digits is cut to its first 18. */
 bool text_integer(const char **cursor, int64_t *value);
 
@@ -65,19 +65,19 @@ bool text_integer(const char **cursor, int64_t *value);
  * letters of either case, and is longer than the suffix. */
 bool text_ends_with(const char *path, const char *suffix);
 
-/* Returns the path of a file that the file `path` names, relative to its folder. To be
- * freed with alloc_free(). */
+/* Returns the path of a file named in the file `path`, relative to the folder of `path`.
+ * To be freed with alloc_free(). */
 char *text_path_beside(const char *path, const char *name);
 
-/* Names that were not found. Starts as {0}. */
+/* Names not found. Starts as {0}. */
 struct text_missing {
     int64_t count;
-    char first[128]; /* the first of them, cut if it is long, for a message */
+    char first[128]; /* the first name, cut if long, for a message */
 };
 
 void text_missing_add(struct text_missing *missing, const char *name);
 
-/* Different names, numbered 0, 1, 2, ... in the order in which they were added. Starts as
+/* Different names, numbered 0, 1, 2, ... in the order of their addition. Starts as
  * {0}. */
 struct text_names {
     char **name;       /* [count] */
@@ -87,7 +87,7 @@ struct text_names {
     int64_t slot_count; /* a power of two, at least twice count */
 };
 
-/* Returns the number of `name`, which is added (copied) if it is new. */
+/* Returns the number of `name`, added (copied) if new. */
 int32_t text_names_add(struct text_names *names, const char *name);
 
 /* Writes the names with blanks between, as many as fit into `size` bytes, and "..." for
