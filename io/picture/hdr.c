@@ -3,14 +3,14 @@
  *
  * Programs differ in the middle of a step: Blender (and Radiance's own description) takes
  * a byte R for R + 1/2, ImageMagick and OpenImageIO for R. phr rounds for the latter, and
- * reads as they do; the former then shows up to 1/128 more.
+ * reads in the same way; the former then shows up to 1/128 more.
  *
  * Scanlines may have run lengths: then they begin with 2, 2 and their length in two
  * bytes, most significant first, and each band is packed by itself: a count up to 128 and
- * so many bytes, or 128 + count and the byte that is repeated. They are read, but not
- * written: they save little in a picture with shades, and all programs read pixels as
- * they are. A written pixel is never taken for the beginning of run lengths, as its
- * largest band is at least 128 or it is black. */
+ * so many bytes, or 128 + count and the byte to repeat. Run lengths are read, but not
+ * written: little is saved in a picture with shades, and all programs read plain pixels.
+ * A written pixel is never taken for the beginning of run lengths, as its largest band is
+ * at least 128 or all bands are 0. */
 #include "io/picture/hdr.h"
 
 #include <float.h>
@@ -71,7 +71,7 @@ static bool refuse(const struct binary *binary, struct error *error, const char 
 }
 
 /* Moves behind the next line, at whose end a zero takes the place of the line end.
- * Returns the line, or NULL if it has no end. */
+ * Returns the line, or NULL without an end. */
 static char *next_line(struct binary *binary)
 {
     char *line = binary->data + binary->position;
@@ -85,7 +85,8 @@ static char *next_line(struct binary *binary)
     return line;
 }
 
-/* Reads the lines up to the empty one. `*exposure`: the product of those that say one. */
+/* Reads the lines up to the empty one. `*exposure`: the product of all exposures
+ * given. */
 static bool read_header(struct binary *binary, double *exposure, struct error *error)
 {
     static const char EXPOSURE[] = "EXPOSURE=", FORMAT[] = "FORMAT=";
@@ -106,7 +107,7 @@ static bool read_header(struct binary *binary, double *exposure, struct error *e
            refuse(binary, error, line ? "bad exposure of the picture" : ENDS);
 }
 
-/* Passes the text and a number behind it. False if they are not there. */
+/* Passes the text and a number behind. False if either is missing. */
 static bool pass_number(const char **at, const char *text, int64_t *value)
 {
     size_t length = strlen(text);
@@ -138,7 +139,7 @@ static bool can_be_packed(int width)
     return width >= PACKED_LEAST && width <= PACKED_MOST;
 }
 
-/* True if the file is long enough for the picture, with runs as long as they can be. */
+/* True if the file is long enough for the picture, with the longest possible runs. */
 static bool has_room(const struct binary *binary, const struct image *image)
 {
     int64_t runs = (image->width + RUN_MOST - 1) / RUN_MOST;

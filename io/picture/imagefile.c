@@ -1,5 +1,5 @@
-/* Pictures in files. Writers go by the format that is asked for, readers by the first
- * bytes, so that a picture may have any name. */
+/* Pictures in files. Writers go by the format asked for, readers by the first bytes, so
+ * that a picture may have any name. */
 #include "io/picture/imagefile.h"
 
 #include "geom/alloc.h"

@@ -11,7 +11,7 @@
 #include "io/scene/binary.h"
 
 /* Writes the format of the target: PFM and HDR, linear; or PPM and PNG, the 8-bit codes
- * of `tone`. Pre: it is no mesh. Errors: as output_close(). */
+ * of `tone`. Pre: the target is no mesh. Errors: as output_close(). */
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error);
 

@@ -1,6 +1,6 @@
-/* The solution mesh. Leaves share the vertices of the smooth shading, so a viewer that
- * interpolates vertex colours shows the same light as phr's pictures, but for steps where
- * a leaf has T-vertices. */
+/* The solution mesh. Leaves share the vertices of the smooth shading, so a viewer
+ * interpolating vertex colours shows the same light as phr's pictures, but for steps
+ * where a leaf has T-vertices. */
 #include "io/picture/mesh.h"
 
 #include "geom/alloc.h"

@@ -12,8 +12,8 @@
 /* The answer of a final gather, for pictures of the solution in later runs. */
 struct mesh_answer {
     const float *error;          /* [patches] of the leaves, W/m^2; or NULL */
-    const struct rgb *straight;  /* [patches] light straight from lamps that a leaf
-                                    reflects, W/m^2; NULL: there is no answer */
+    const struct rgb *straight;  /* [patches] light straight from lamps, reflected by a
+                                    leaf, W/m^2; NULL: there is no answer */
     const float *outside;        /* [patches] share of a leaf outside of things on it and
                                     of narrow gaps, 1; or NULL */
     struct solution_lamps lamps; /* known: there is `straight` */
@@ -21,13 +21,13 @@ struct mesh_answer {
 
 /* Writes binary little-endian PLY: vertices with float x y z (input units), uchar red
  * green blue (sRGB of their radiosity) and float radiosity_r radiosity_g radiosity_b (of
- * the smooth shading, W/m^2); faces with `list uchar int vertex_indices`,
- * float radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint
- * hierarchy: one face per leaf, roots in order, depth first. After a final gather, float
- * error and float rest_r rest_g rest_b follow, the radiosity less what comes straight
- * from lamps: where that is most of it, both as floats would lose the rest; and float
- * outside, the share of the leaf outside of things on it and of narrow gaps. Then come
- * the roots, as io/picture/solution.h has them.
+ * the smooth shading, W/m^2); faces with `list uchar int vertex_indices`, float
+ * radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint hierarchy:
+ * one face per leaf, roots in order, depth first. After a final gather, float error and
+ * float rest_r rest_g rest_b follow, the radiosity less the light straight from lamps:
+ * where lamps give most, two floats would lose the rest; and float outside, the share of
+ * the leaf outside of things on it and of narrow gaps. Then come the roots, as
+ * io/picture/solution.h has them.
  * Errors: as output_close(). */
 bool mesh_write(const struct shading *shading, const struct tone *tone,
                 const struct mesh_answer *answer, const char *path, struct error *error);

@@ -3,10 +3,10 @@
  * in the format deflate (RFC 1951).
  *
  * Neighbours differ by little, so bytes near 0 are frequent, in any picture. The stream
- * has one prefix code that is good for such bytes: 1 bit for 0, 3 bits for 1 and -1, and
- * two bits more for each doubling. It needs no counts of bytes and no tree, and the file
- * is a quarter of the PPM (Cornell box; a room of 1,000: a third), where zlib -9 comes to
- * a seventh. Blocks without a code ("stored") would save 50 lines here. */
+ * has one prefix code, good for such bytes: 1 bit for 0, 3 bits for 1 and -1, and two
+ * bits more for each doubling. The code needs no counts of bytes and no tree, and the
+ * file is a quarter of the PPM (Cornell box; a room of 1,000: a third), where zlib -9
+ * comes to a seventh. Blocks without a code ("stored") would save 50 lines here. */
 #include "io/picture/png.h"
 
 #include <stdint.h>
@@ -31,7 +31,7 @@ struct png {
     uint16_t code[SYMBOLS];   /* first bit lowest */
     uint8_t *bytes;           /* [count] of the next chunk */
     size_t count;
-    uint64_t bits;            /* [bit_count] that do not fill a byte yet, first lowest */
+    uint64_t bits;            /* [bit_count] not filling a byte yet, first lowest */
     int bit_count;
     uint64_t sum, sum_of_sums; /* of the bytes compressed: Adler-32 */
 };
@@ -98,8 +98,8 @@ static unsigned reversed(unsigned bits, int count)
     return result;
 }
 
-/* Returns the bits of a symbol: an odd number, so that all codes together are complete:
- * 1/2 + 2/2^3 + 4/2^5 + ... + 128/2^15 + 2/2^9 = 1. */
+/* Returns the bits of a symbol: an odd number, for all codes together to be complete: 1/2
+ * + 2/2^3 + 4/2^5 + ... + 128/2^15 + 2/2^9 = 1. */
 static int symbol_length(int symbol)
 {
     int length = 1;

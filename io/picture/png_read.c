@@ -2,7 +2,7 @@
  * and the filters of its rows are undone.
  *
  * A prefix code is the number of its words of each length, and its symbols in the order
- * of words: a word of some length is known by how far it is behind the first of them.
+ * of words: a word of some length is known by its distance from the first such word.
  * Damage is found by the codes, by the number of bytes, and by their sum; the sums of
  * chunks would tell no more. */
 #include <stdlib.h>
@@ -107,7 +107,7 @@ static int read_lengths(struct deflated *stream, uint8_t lengths[SYMBOLS + DISTA
     return symbols;
 }
 
-/* Makes the codes that a block brings, or those of blocks that bring none. */
+/* Makes the codes of a block, or the fixed ones for a block without any. */
 static void make_codes(struct deflated *stream, bool brings)
 {
     uint8_t lengths[SYMBOLS + DISTANCES] = {0};
@@ -127,8 +127,8 @@ static void put(struct deflated *stream, int byte)
     stream->bytes[stream->count++] = (uint8_t)byte;
 }
 
-/* Returns the number that a symbol begins: itself below 2 parts; beyond, each part more
- * has a bit more behind it. */
+/* Returns the number begun by a symbol: the symbol itself below 2 parts; beyond, each
+ * part more has a bit more behind it. */
 static int take_number(struct deflated *stream, int symbol, int parts)
 {
     int bits = symbol < 2 * parts ? 0 : symbol / parts - 1;
@@ -167,7 +167,7 @@ static void copy_block(struct deflated *stream)
         put(stream, take_bits(stream, 8));
 }
 
-/* Inflates `most` bytes; bad if there are not as many, or they have another sum. */
+/* Inflates `most` bytes; bad if there are not as many, or their sum is wrong. */
 static void inflate(struct deflated *stream)
 {
     int method = take_bits(stream, 8), flags = take_bits(stream, 8);
@@ -191,8 +191,8 @@ static void inflate(struct deflated *stream)
                   binary_integer((const char *)stream->at, 4, true) != (sums << 16 | sum);
 }
 
-/* Undoes the filter of a row of samples, whose number is before them: each is the sum of
- * itself and a prediction from the samples to its left, above it, and left above.
+/* Undoes the filter of a row of samples, with its number in front: each sample is the sum
+ * of itself and a prediction from the samples to its left, above it, and left above.
  * `pixel`: samples of a pixel. */
 static void undo_filter(struct deflated *stream, uint8_t *row, const uint8_t *above,
                         int64_t size, int pixel)

@@ -2,9 +2,9 @@
  * samples; PFM begins with the bottom scanline, PPM with the top one.
  *
  * The reader accepts the variants of other programs: any blanks between words of the
- * header, comments in PPM, grey PFM, a scale other than 1 (samples are multiplied by it,
- * as in Debevec's description and most readers). It is strict about the size: missing or
- * extra samples mean that the header belongs to another picture. */
+ * header, comments in PPM, grey PFM, a scale other than 1 (a factor on the samples, as in
+ * Debevec's description and most readers). Nothing is forgiven in the size: missing or
+ * extra samples mean a header of another picture. */
 #include "io/picture/pnm.h"
 
 #include <float.h>
@@ -68,7 +68,7 @@ static bool is_blank(char c)
     return c != '\0' && strchr(" \t\v\f\r\n", c) != NULL;
 }
 
-/* Reads the next word of the header or of plain samples, without the blank behind it.
+/* Reads the next word of the header or of plain samples, without the blank behind.
  * Comments, in PPM only, go from # to the end of the line. */
 static bool next_word(struct image_reader *reader, bool comments, char word[32])
 {
@@ -134,8 +134,8 @@ static bool read_ppm_header(struct image_reader *reader)
     return true;
 }
 
-/* Skips the one blank behind the header; CR LF count as one if all samples follow
- * them. */
+/* Skips the one blank behind the header; CR LF count as one if followed by all
+ * samples. */
 static bool find_samples(struct image_reader *reader, int64_t bytes)
 {
     struct binary *binary = reader->binary;

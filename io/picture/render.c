@@ -1,28 +1,28 @@
 /* Rendering. A pixel depends only on its place, so scanlines can be dealt to ranks in any
- * way. A rank visits its own in the order of their numbers with the digits backwards:
- * each part of them is spread over the picture, and the share that is done tells the time
+ * way. A rank visits its own in the order of their numbers with the digits backwards: any
+ * part of the scanlines is spread over the picture, and the share done tells the time
  * left, also where the upper half is dark.
  *
- * A ray that meets the back of a triangle sees its twin, if there is one. The N x N
- * rays of a pixel are on a grid whose rows and columns are slanted by a part of a cell,
- * so that no two have the same x or y: across an upright edge there are N x N steps.
+ * A ray meeting the back of a triangle sees its twin, if there is one. The N x N rays of
+ * a pixel are on a grid whose rows and columns are slanted by a part of a cell: no two
+ * rays have the same x or y, and across an upright edge there are N x N steps.
  *
- * Direct light of lamps has edges that no mesh follows, so it is gathered at each visible
- * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
- * light is gathered at the point: then the picture has no trace of the mesh. So it is
- * where interpolation does not hold (io/picture/shading.h): on a leaf that counts as
- * covered but is seen, as the side of a book that stands out from its neighbours; on a
- * steep leaf, in the housing of a lamp. All points of a pixel on one triangle are
- * gathered together, by few segments; a second time by more where these are noisy, as
- * where lamps are seen in part, or where the mesh has another light of lamps: few
- * segments may all arrive, or all miss, and seem sure.
+ * Direct light of lamps has edges followed by no mesh, so this light is gathered at each
+ * visible point, by segments; reflected light is smooth and interpolated over the mesh.
+ * Or all light is gathered at the point: then the picture has no trace of the mesh. All
+ * light is also gathered where interpolation does not hold (io/picture/shading.h): on a
+ * leaf counted as covered but visible, as the side of a book standing out from its
+ * neighbours; on a steep leaf, in the housing of a lamp. All points of a pixel on one
+ * triangle are gathered together, by few segments; a second time by more where these are
+ * noisy, as where lamps are seen in part, or where the mesh has another light of lamps:
+ * few segments may all arrive, or all miss, and seem sure.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
  * its normal, weighted by the barycentric coordinate of the corner (Hanika, 2021). So
  * facets do not shadow each other where the smooth surface is lit. A facet of a bowl is
- * not lifted, and may hide from its own points a lamp that is above their tangent planes
- * but behind the facet. */
+ * not lifted, and may hide from its own points a lamp above their tangent planes but
+ * behind the facet. */
 #include "io/picture/render.h"
 
 #include <math.h>
@@ -34,17 +34,18 @@
 
 enum {
     SEGMENTS = 4, /* to lamps, for a pixel, at first */
-    ENOUGH = 32,  /* in a pixel that is not sure, at least: or half of --final-gather if
-                     that is less, or a quarter if that is more */
+    ENOUGH = 32,  /* in an unsure pixel, at least; or half of --final-gather if less, or a
+                     quarter if more */
     COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
                      cover the leaf */
     STEEP = 2,    /* those on a steep leaf, over --final-gather */
     MORE = 4      /* most factor on these two */
 };
 
-/* A pixel is not sure if its light has this deviation by chance, or is so far from that
- * of the mesh, relative to the geometric mean of it and of what all surfaces reflect: a
- * display shows differences by the root of light. .015 are about one code of 255. */
+/* A pixel is unsure if its light has this deviation by chance, or is so far from the
+ * mesh's, relative to the geometric mean of its light and the light reflected by all
+ * surfaces: a display shows differences by the root of light. .015 are about one code of
+ * 255. */
 static const double NOISE = 0.015, APART = 0.01; /* 1 */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
@@ -57,30 +58,29 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 
 /* --- visible points --- */
 
-/* The roots that the camera rays of a pixel meet: an entry for each ray that meets
- * one. */
+/* The roots met by the camera rays of a pixel: an entry for each ray with a hit. */
 struct pixel_roots {
     int32_t *roots;
     struct vec3 *weights; /* barycentric coordinates in the root */
-    int *whole;           /* rays for a pixel of such points, of which all light is
-                             gathered; 0: it is interpolated; set by show() */
+    int *whole;           /* rays for a pixel of such points, where all light is gathered;
+                             0: light is interpolated; set by show() */
     struct vec3 *at;      /* points, scene units; room for add_light() */
     int count;
 };
 
 /* Light of a pixel. */
 struct pixel_light {
-    struct rgb sum;   /* of the radiosities that the camera rays meet, W/m^2 */
-    struct rgb apart; /* by how much the light of lamps in it is more than the mesh's */
+    struct rgb sum;   /* of the radiosities met by the camera rays, W/m^2 */
+    struct rgb apart; /* excess of its lamps' light over the mesh's */
     double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
 };
 
-/* Least cosine between the normal at a corner and that of the plane, 45 degrees, for
- * facets of a smooth surface. A box with normals smoothed over its edges is beyond it:
- * lifted towards a sphere, its sides would cover the objects that stand on them. */
+/* Least cosine between the normals at a corner and of the plane, 45 degrees, for facets
+ * of a smooth surface. A box with normals smoothed over its edges is beyond 45 degrees:
+ * lifted towards a sphere, its sides would cover the objects on top. */
 static const double LEAN = 0.7;
 
-/* A root as it is shown: with normals at its corners, or flat. */
+/* A root as shown: with normals at its corners, or flat. */
 struct facade {
     struct triangle triangle;
     struct vec3 normals[3];
@@ -167,7 +167,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     pixel->variance += count * count * rho * rho * light.variance;
 }
 
-/* Moves the entries that are like the first to the front. Returns their number. */
+/* Moves the entries like the first to the front. Returns their number. */
 static int collect_root(struct pixel_roots *view)
 {
     int count = 0;
@@ -235,7 +235,7 @@ static struct pixel_light show(const struct renderer *renderer,
     return pixel;
 }
 
-/* The factor on the fewest segments by which a pixel is found again; 1: it is sure. */
+/* The factor on the fewest segments by which a pixel is found again; 1: a sure pixel. */
 static int more_for(const struct renderer *renderer, const struct pixel_light *pixel,
                     int count)
 {
@@ -249,7 +249,7 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     return noise < least ? least : noise < most ? (int)noise : most;
 }
 
-/* The same by few segments, and where that is not sure by more, other ones. */
+/* The same by few segments, and where unsure by more, other ones. */
 static struct rgb show_well(const struct renderer *renderer,
                             const struct pixel_roots *view, uint64_t seed)
 {
@@ -305,7 +305,7 @@ static void look(struct strip *strip, int px, int py, int pixels)
     }
 }
 
-/* The roots that the rays of a pixel meet. */
+/* The roots met by the rays of a pixel. */
 static void collect_roots(const struct strip *strip, const struct octree_hit *hits,
                           struct pixel_roots *view)
 {
@@ -346,7 +346,7 @@ static void render_scanline(struct strip *strip, int py, float *rgb)
     }
 }
 
-/* Returns the number that the last binary digits of i are backwards. */
+/* Returns the number made of the last binary digits of i, backwards. */
 static int backwards(int i, int digits)
 {
     int number = 0;

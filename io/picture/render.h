@@ -14,7 +14,7 @@ struct renderer {
     struct final_gather *gather;   /* direct light, and all where `shading` does not
                                       hold; without `shading`, all; or NULL */
     int rays;                      /* from a leaf; without `shading` for a pixel */
-    double mean;                   /* radiosity of all that reflects, W/m^2 */
+    double mean;                   /* radiosity of all reflecting surfaces, W/m^2 */
 };
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
@@ -26,7 +26,7 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
                         const double weight[3], uint64_t seed);
 
 /* Renders the scanlines first, first + step, ... of the picture, counted from the top. A
- * pixel is the mean of samples x samples rays; a ray that meets nothing, or a back, is
+ * pixel is the mean of samples x samples rays; a ray meeting nothing, or a back, is
  * black. Ticks `progress`, which may be NULL, once a scanline.
  * Returns RGB floats, 3 * width for each scanline; to be freed with alloc_free(). */
 float *render_scanlines(const struct renderer *renderer, const struct camera *camera,

@@ -6,39 +6,38 @@
  * is the mean radiosity of the leaves around it.
  *
  * Means blur: where the light changes fast, as at a lamp, a leaf shows more or less light
- * than it has. So the deficit of each leaf, its radiosity less the mean that it shows, is
- * added to its vertices, as a mean over the leaves around weighted by area. Light with
- * the shadows of lamps in it gets one such correction, and the value of a vertex stays in
- * the range of the leaves around it, so that shadows get no bright rims. The error of
- * pictures falls by a tenth to a third (furnished room, Cornell box).
+ * than its own. So the deficit of each leaf, its radiosity less the shown mean, is added
+ * to its vertices, as a mean over the leaves around weighted by area. Light with the
+ * shadows of lamps in it gets one such correction, and the value of a vertex stays in the
+ * range of the leaves around it, so shadows get no bright rims. The error of pictures
+ * falls by a tenth to a third (furnished room, Cornell box).
  *
  * Light without that of lamps is smooth, and falls or rises up to the very edge of a
- * surface, beyond the means of all leaves there: it gets ROUNDS corrections and BEYOND
- * times that range. More of them, and leaves that have few rays, would exaggerate
- * differences that are noise, so each deficit d, of a leaf whose radiosity has the
- * standard deviation s, counts 1 - (s/d)^2 times, or not at all: the estimate of a value
- * from one noisy sample (James and Stein, 1961). The last correction takes deficits
- * whole: else light would be lost, .6 % of the picture of a furnished room (make cycles).
+ * surface, beyond the means of all leaves there: such light gets ROUNDS corrections and
+ * BEYOND times this range. More corrections, and leaves with few rays, would exaggerate
+ * noise, so each deficit d, of a leaf whose radiosity has the standard deviation s,
+ * counts 1 - (s/d)^2 times, or not at all: the estimate of a value from one noisy sample
+ * (James and Stein, 1961). The last correction takes deficits whole: else light would be
+ * lost, .6 % of the picture of a furnished room (make cycles).
  *
  * Where a box stands on the floor, or a picture hangs close to a wall, leaves are covered
- * in part: their rows tell the share that is open (rad/beyond/gather/rows.h). The covered
- * part is dark and invisible, and must not darken the rest. The light of the leaf belongs
- * to its open part, if that is a quarter at least: the shown irradiance is that of the
- * leaf over the share that is open. A vertex with only covered leaves around it takes
- * their mean.
+ * in part: their rows tell the open share (rad/beyond/gather/rows.h). The covered part is
+ * dark and invisible, and must not darken the rest. The light of the leaf belongs to its
+ * open part, if that is a quarter at least: the shown irradiance is the leaf's over the
+ * open share. A vertex with only covered leaves around it takes their mean.
  *
  * In the housing of a lamp light is a hundred times as bright as in the room, and rises
- * and falls by much of that over a leaf, in no straight line. Leaves over which it varies
- * by more than the mean of all light, one in two hundred by area, had half of the squared
- * error of the pictures of furnished rooms. They are steep: no value is to be
+ * and falls by much of this over a leaf, in no straight line. Leaves with a variation
+ * beyond the mean of all light, one in two hundred by area, had half of the squared error
+ * of the pictures of furnished rooms. Such leaves are steep: no value is to be
  * interpolated there, and no reflected light lacks.
  *
  * Between its corners a leaf interpolates linearly. A leaf with T-vertices is divided, as
- * its children would be, into tiles without any; where these have a corner that is no
- * vertex, in the middle of an edge, it shows the mean of the ends. So a T-vertex shows
- * the light around it, and the large leaf takes it up over a tile as large as its small
- * neighbours. The result is continuous on every smooth surface, but for T-junctions of
- * the input mesh itself. */
+ * its children would be, into tiles without any; where a corner of a tile is no vertex,
+ * in the middle of an edge, the corner shows the mean of the ends. So a T-vertex shows
+ * the light around it, and the large leaf takes the light up over a tile as large as its
+ * small neighbours. The result is continuous on every smooth surface, but for T-junctions
+ * of the input mesh itself. */
 #include "io/picture/shading.h"
 
 #include <math.h>
@@ -73,7 +72,7 @@ static uint64_t hash_point(struct vec3 x, int32_t surface)
     return hash;
 }
 
-/* Returns the slot of the vertex, or the free slot where it belongs. */
+/* Returns the slot of the vertex, or the free slot for a new one. */
 static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surface)
 {
     int64_t slot = (int64_t)(hash_point(x, surface) & (uint64_t)(table->slot_count - 1));
@@ -125,8 +124,8 @@ static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
     return table->slots[slot];
 }
 
-/* Returns the vertex in the middle between two, or -1: none is there, or it is one of
- * them, since they are next to each other in double. */
+/* Returns the vertex in the middle between two, or -1: none is there, or the middle
+ * rounds to one of the two. */
 static int32_t vertex_between(const struct table *table, int32_t u, int32_t v)
 {
     if (u < 0 || v < 0)
@@ -136,7 +135,7 @@ static int32_t vertex_between(const struct table *table, int32_t u, int32_t v)
     return middle == u || middle == v ? -1 : middle;
 }
 
-/* --- tiles of leaves that have T-vertices --- */
+/* --- tiles of leaves with T-vertices --- */
 
 struct tile {
     int32_t vertex[3];   /* at the corners, or -1 */
@@ -154,8 +153,8 @@ static struct tile whole_leaf(const struct shading *shading, const struct rgb *v
     return whole;
 }
 
-/* Makes the tile between the middles of the edges: corner k is opposite to that of the
- * whole. Returns whether one of them is a T-vertex, so that the whole is divided. */
+/* Makes the tile between the middles of the edges: corner k is opposite to corner k of
+ * the whole. Returns whether a middle is a T-vertex, and so the whole divided. */
 static bool find_inner(const struct table *table, const struct rgb *values,
                        const struct tile *whole, struct tile *inner)
 {
@@ -208,14 +207,15 @@ static void add_mean(const struct table *table, const struct tile *tile, double 
 /* The deviation of a leaf's radiosity, in parts of its error. */
 static const double DEVIATION = 0.4;
 
-/* Corrections of light without that of lamps; how far it may be beyond the leaves. */
+/* Corrections of light without that of lamps; how far this light may be beyond the
+ * leaves. */
 enum { ROUNDS = 4 };
 static const double BEYOND = 1.5;
 
-/* Least open share of a leaf that is not covered. */
+/* Least open share of an uncovered leaf. */
 static const double LEAST_OPEN = 0.25;
 
-/* Weight of a covered leaf: it counts only at vertices without open leaves. */
+/* Weight of a covered leaf, which counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
@@ -247,10 +247,10 @@ struct blend {
     const float *outside;   /* [patches] open share of a leaf, 1; NULL: all are open */
     int32_t *surface;       /* [roots] of surface_of_roots() */
     int round;              /* 0: the means at vertices; then corrections */
-    bool is_last;           /* of the corrections: it takes deficits as they are */
+    bool is_last;           /* of the corrections: takes deficits whole */
     struct lack *lacks;     /* [vertex_count] */
     struct rgb value, deficit; /* of the leaf at hand, W/m^2 */
-    double fraction, weight;   /* open part of it, 1; weight of its deficit */
+    double fraction, weight;   /* open part of the leaf, 1; weight of its deficit */
     double steep;              /* least difference over a steep leaf, over bands, W/m^2 */
 };
 
@@ -270,7 +270,7 @@ static void for_each_leaf(struct blend *blend,
     }
 }
 
-/* The open share of a leaf, 1; 0: it counts as covered. */
+/* The open share of a leaf, 1; 0: counts as covered. */
 static double open_share(const struct blend *blend, int32_t leaf)
 {
     double share = blend->outside ? (double)blend->outside[leaf] : 1.0;
@@ -359,8 +359,8 @@ static void give(struct blend *blend, int32_t vertex)
     }
 }
 
-/* Gives it to the T-vertices in the edge from u to v. Recurses down to an edge without,
- * at most ID_MAX_LEVEL halvings. */
+/* Gives the value to the T-vertices in the edge from u to v. Recurses down to an edge
+ * without, at most ID_MAX_LEVEL halvings. */
 static void give_inside(struct blend *blend, int32_t u, int32_t v)
 {
     int32_t middle = vertex_between(blend->shading->table, u, v);
@@ -433,7 +433,7 @@ static void blend_light(struct blend *blend, const struct rgb *less)
     }
 }
 
-/* The light of lamps is the difference of all light and of that without it. */
+/* The light of lamps is all light less the light without that of lamps. */
 static void blend_leaves(struct blend *blend, const struct rgb *less)
 {
     struct table *table = blend->shading->table;

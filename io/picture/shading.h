@@ -9,7 +9,7 @@
 
 /* Where interpolation over a leaf holds. */
 enum shade {
-    SHADE_SMOOTH,  /* at all points that a camera sees */
+    SHADE_SMOOTH,  /* at all points seen by a camera */
     SHADE_COVERED, /* nowhere: only less than a quarter is open */
     SHADE_STEEP    /* nowhere: light varies by more than its mean over all surfaces */
 };
@@ -23,17 +23,17 @@ struct shading {
     struct rgb *lamps;           /* [vertex_count] by lamps, if not in `values`, W/m^2 */
     int64_t vertex_count;
     int64_t own_count;           /* vertices before those of a sky */
-    bool *divided;               /* [forest->count] leaf: it has T-vertices */
+    bool *divided;               /* [forest->count] leaf with T-vertices */
     uint8_t *shades;             /* [forest->count] enum shade of a leaf */
     struct table *table;         /* finds vertices; owns positions and values */
 };
 
 /* Prepares the smooth shading of a solution. `less`: [patches] radiosity to subtract,
- * W/m^2: that by the light of lamps, with its shadows; or NULL. `error`: [patches] that
- * of the radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only if there is
- * `less`. `outside`: [patches] share of a leaf outside of things on it and of narrow
- * gaps, 1; NULL: all leaves are open. Vertices are numbered in the canonical order of
- * leaves: the same on every rank. */
+ * W/m^2: by the light of lamps, with its shadows; or NULL. `error`: [patches] of the
+ * radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only with `less`.
+ * `outside`: [patches] share of a leaf outside of things on it and of narrow gaps, 1;
+ * NULL: all leaves are open. Vertices are numbered in the canonical order of leaves: the
+ * same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
                                const float *error, const float *outside);
 

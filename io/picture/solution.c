@@ -1,5 +1,5 @@
 /* Stored solutions. A picture needs more of a scene than its leaves: where its lamps are,
- * what reflects, the normals of smooth surfaces. All that is stored in full, for a
+ * what reflects, the normals of smooth surfaces. All these are stored in full, for a
  * picture has edges: were a corner rounded to a float, some of a million rays would pass
  * it on the other side.
  *
@@ -64,7 +64,7 @@ static bool read_vertices(struct solution_reader *reader,
     return true;
 }
 
-/* Takes the leaf of the current record. Properties that it lacks are 0. */
+/* Takes the leaf of the current record. Missing properties are 0. */
 static bool take_leaf(const struct solution_reader *reader, struct solution_leaf *leaf)
 {
     const struct ply_file *file = reader->file;
@@ -175,7 +175,7 @@ static bool read_root_corners(struct solution_reader *reader,
     return true;
 }
 
-/* Largest exponent of a scene that scene_prepare() takes. */
+/* Largest exponent of a scene for scene_prepare(). */
 enum { EXPONENT_MAX = 500 };
 
 static bool read_whole(struct solution_reader *reader, const struct ply_element *element)
@@ -215,7 +215,7 @@ static bool is_solution(const struct ply_file *file)
            has_all(face, PLY_CORNERS, PLY_CORNERS) && vertex < face && face->count > 0;
 }
 
-/* True if the file has either nothing of the scene, or all that it needs, in order. */
+/* True if the file has either nothing of the scene, or all its elements, in order. */
 static bool has_whole_scene(const struct ply_file *file)
 {
     const struct ply_element *material = ply_file_find(file, PLY_MATERIAL);
@@ -257,8 +257,8 @@ static bool read_elements(struct solution_reader *reader)
     return good && ply_file_end(file, reader->error);
 }
 
-/* Fits the scene to the leaves: drops the triangles that have none. False if these are
- * not the leaves of all its roots. */
+/* Fits the scene to the leaves: drops the triangles without any. False if these are not
+ * the leaves of all its roots. */
 static bool fit_scene(const struct solution_mesh *solution)
 {
     struct scene *scene = solution->scene;

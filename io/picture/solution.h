@@ -1,5 +1,5 @@
-/* Stored solutions: the meshes that phr writes, with the parts of the scene that pictures
- * need.
+/* Stored solutions: the meshes written by phr, with the parts of the scene needed for
+ * pictures.
  *
  * Behind vertices and faces (io/picture/mesh.h) a PLY file has the elements
  *
@@ -31,7 +31,7 @@ struct solution_leaf {
     struct rgb radiosity;     /* W/m^2 */
     struct rgb rest;          /* radiosity less what comes straight from lamps, W/m^2 */
     double error;             /* W/m^2 */
-    double outside;           /* share of the leaf that is open, 1 */
+    double outside;           /* open share of the leaf, 1 */
 };
 
 /* The light of lamps in a final gather (rad/beyond/gather/gather.h). */
@@ -60,7 +60,7 @@ bool solution_is_stored(const struct ply_file *file);
 bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error);
 
-/* Does the same with a file whose header is read, which it does not close. */
+/* Does the same with a file whose header is read, which stays open. */
 bool solution_mesh_of_file(struct solution_mesh *solution, struct ply_file *file,
                            struct error *error);
 

@@ -1,13 +1,13 @@
 /* Smooth surfaces: roots joined over common edges.
  *
- * All edges of all roots are sorted, so that equal edges (the same end points, to the
- * bit) are neighbours; roots on both sides of a smooth edge are joined (union-find).
+ * All edges of all roots are sorted, so equal edges (the same end points, to the bit) are
+ * neighbours; roots on both sides of a smooth edge are joined (union-find).
  *
  * Triangles with normals at their corners may stand for a curved surface: an edge is
  * smooth if the normals agree at both of its ends. Normals are turned to the front, so a
  * front never goes on in a back. Roots joined at one edge are one surface everywhere: a
- * crease that ends inside a smooth surface is lost, since telling its two sides apart
- * would take a number for each corner and each edge of a root. */
+ * crease ending inside a smooth surface is lost, since telling its two sides apart would
+ * take a number for each corner and each edge of a root. */
 #include "io/picture/surface.h"
 
 #include <stddef.h>

@@ -1,7 +1,6 @@
-/* The mean colour of a picture, which stands for it: light that a wall sends into a room
- * is hardly another if it comes from its pattern. A mean of codes would be too dark, as
- * half the light has code 188 of 255. Equal codes are counted, so that the mean depends
- * on no order. */
+/* The mean colour of a picture, in place of the picture: light sent by a wall into a room
+ * is hardly changed by the wall's pattern. A mean of codes would be too dark, as half the
+ * light has code 188 of 255. Equal codes are counted, so the mean depends on no order. */
 #include "io/picture/texture.h"
 
 #include "geom/alloc.h"

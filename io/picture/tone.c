@@ -9,8 +9,8 @@
  * tiny lamp a thousand times brighter than its room, and fall with every black pixel
  * around an object. The 95th percentile shows such a room well, but not a room whose
  * windows are a tenth of the picture; so light above four times the median may be cut off
- * (a grey card is then in the middle of the range). A picture that is nearly dark but for
- * one lit spot shows the spot. */
+ * (a grey card is then in the middle of the range). A picture nearly dark but for one lit
+ * spot shows the spot. */
 #include "io/picture/tone.h"
 
 #include <stddef.h>

@@ -6,7 +6,7 @@
 
 struct tone {
     double exposure;       /* factor on linear values: their product 1 is full white */
-    double threshold[255]; /* least product that gets code k + 1 and not k */
+    double threshold[255]; /* least product with code k + 1 and not k */
 };
 
 /* Returns the sRGB curve with an exposure. */
@@ -19,9 +19,9 @@ uint8_t tone_encode(const struct tone *tone, double linear);
 double tone_decode(double code);
 
 /* Returns the exposure for `count` linear RGB pixels, from the largest band of each pixel
- * that is not black. It maps to 0.9 the 95th percentile of these values, so that hardly
- * any colour is cut off, or four times their median if that is lower, but at least a 16th
- * of the percentile. 1 if all pixels are black. */
+ * not black. The exposure maps to 0.9 the 95th percentile of these values, so hardly any
+ * colour is cut off, or four times their median if lower, but at least a 16th of the
+ * percentile. 1 if all pixels are black. */
 double tone_automatic(const float *rgb, int64_t count);
 
 #endif

@@ -1,25 +1,25 @@
 /* The camera of a scene without a view file.
  *
  * Room or object? From a grid of points in the box of the subject rays go out in 26
- * directions. Points that see backs, or the dark, are inside an object or behind the
- * walls; points that see lit fronts are free. If fewer than a tenth of the rays of free
- * points leave the scene, it is a room, else it is open: a box without its front, like
+ * directions. Points seeing backs, or the dark, are inside an object or behind the walls;
+ * points seeing lit fronts are free. If fewer than a tenth of the rays of free points
+ * leave the scene, the scene is a room, else open: a box without its front, like
  * Cornell's, loses one ray in six. Skies are nothing.
  *
- * In a room, each free point is moved to eye height between the surfaces below and above
- * it, and rates the views around. The best view is deep, by the sum of square roots of
+ * In a room, each free point is moved to eye height between the surfaces below and above,
+ * and rates the views around. The best view is deep, by the sum of square roots of
  * distances, and rich: the material changes often from ray to ray. The roots keep a view
  * through a gap from beating one of the whole room, the materials an empty wall. Such an
- * eye is never behind a wall or in a cupboard, as it sees fronts, and deep views begin at
- * corners by themselves. Unlit surfaces do not count, so that of several rooms a lit one
- * is chosen.
+ * eye is never behind a wall or in a cupboard, as fronts are seen from there, and deep
+ * views begin at corners by themselves. Unlit surfaces do not count, so of several rooms
+ * a lit one is chosen.
  *
  * Any other scene is seen whole, from the direction whose picture has the most lit fronts
- * that no back or twin stands before, and the most materials: of a street its road, of a
- * box its lamp. The front, a little aside and above, is taken unless another direction
- * is better; from further above where the subject is low, as a plan or a city; level
- * where it is a box, also a closed one that is hardly longer than high and would be seen
- * from too near within. Backs that are black are looked through.
+ * without a back or twin before, and the most materials: of a street its road, of a box
+ * its lamp. The front, a little aside and above, is taken unless another direction is
+ * better; from further above where the subject is low, as a plan or a city; level where
+ * the subject is a box, also a closed one hardly longer than high, too near to see from
+ * within. Black backs are looked through.
  *
  * Rejected: a fixed corner of the bounding box, which is in a wall or a cupboard as often
  * as not; the brightest picture, which has to wait for the light and changes with
@@ -44,7 +44,7 @@ static const double DOWN = 0.2;         /* slope of a view into a room */
 static const double SLOPE[SLOPES] = {-0.8, -0.5, -0.2, 0.1, 0.4};
 static const double VARIETY = 0.1;      /* added to the rating by a change of material */
 static const double WIDE = 0.7;         /* tangent of half the wider angle in a room */
-static const double OPEN_ROOM = 0.1, OPEN_BOX = 0.25; /* shares of rays that get lost */
+static const double OPEN_ROOM = 0.1, OPEN_BOX = 0.25; /* shares of lost rays */
 static const double OUTSIDE_FOV = 40.0; /* degrees */
 static const double SMALL = 1.25; /* length of a small box, relative to its height */
 static const double FLAT = 0.5; /* height of a plan, relative to its shorter side */
@@ -61,7 +61,7 @@ struct site {
 /* Results of a ray: the distance of a front (> 0), or one of these. */
 enum { BACK = 0, NOTHING = -1 };
 
-/* Casts a ray; skies are nothing. Sets `*root` to that whose front it meets, or -1. */
+/* Casts a ray; skies are nothing. Sets `*root` to the root whose front is met, or -1. */
 static double look_at(const struct site *site, struct vec3 from, struct vec3 direction,
                       bool fronts_only, int32_t *root)
 {
@@ -100,8 +100,8 @@ static struct vec3 lift(const struct site *site, double right, double front, dou
                       : (struct vec3){right, up, front};
 }
 
-/* Returns one of AZIMUTHS level directions, with a slope. They are even within 2 degrees;
- * made without sine and cosine. */
+/* Returns one of AZIMUTHS level directions, with a slope. Directions are even within 2
+ * degrees; made without sine and cosine. */
 static struct vec3 azimuth(const struct site *site, int k, double slope)
 {
     static const double QUARTER[AZIMUTHS / 4][2] = {{5, 0}, {5, 1}, {5, 2}, {3, 2},
@@ -126,8 +126,8 @@ static struct vec3 grid_point(const struct subject *subject, int cell)
                                               (cell / (GRID * GRID) + 0.5) * side.z});
 }
 
-/* True if the point is free. Adds the rays from a free point to `*rays`, and those that
- * leave the scene to `*lost`. */
+/* True if the point is free. Adds the rays from a free point to `*rays`, and the rays
+ * leaving the scene to `*lost`. */
 static bool is_free(const struct site *site, struct vec3 point, int *rays, int *lost)
 {
     int fronts = 0, backs = 0, nothing = 0;
@@ -148,7 +148,7 @@ static bool is_free(const struct site *site, struct vec3 point, int *rays, int *
     return true;
 }
 
-/* Returns the share of the rays from free points that leave the scene, 1 without any. */
+/* Returns the share of the rays from free points leaving the scene, 1 without any. */
 static double find_openings(const struct site *site, bool free[GRID * GRID * GRID])
 {
     int rays = 0, lost = 0;
@@ -159,7 +159,7 @@ static double find_openings(const struct site *site, bool free[GRID * GRID * GRI
 
 /* --- inside --- */
 
-/* Moves a point to eye height between the surfaces straight below and above it. */
+/* Moves a point to eye height between the surfaces straight below and above. */
 static struct vec3 stand(const struct site *site, struct vec3 point)
 {
     double below = look(site, point, lift(site, 0.0, 0.0, -1.0));
@@ -234,8 +234,8 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
 
 /* --- outside --- */
 
-/* Returns the kind of a surface: its material, or where there is one only the side that
- * it faces most, one of four or level. */
+/* Returns the kind of a surface: its material, or where there is one only the side it
+ * faces most, one of four or level. */
 static int32_t kind_of(const struct site *site, int32_t root)
 {
     struct vec3 normal = scene_root_plane(site->scene, root).normal;
@@ -263,8 +263,8 @@ static bool has_materials(const struct site *site)
     return false;
 }
 
-/* Returns the share of the kinds of surfaces, but for those of skies alone, that are in
- * `rays` rays of a picture, each in full if it has a quarter of an equal part. */
+/* Returns the share of the kinds of surfaces, but for kinds of skies alone, met by `rays`
+ * rays of a picture, each in full if it has a quarter of an equal part. */
 static double rate_variety(const struct site *site, const int *met, int rays)
 {
     const struct scene *scene = site->scene;
@@ -311,7 +311,7 @@ static double rate(const struct site *site, const struct camera *camera)
 
 enum shape { THING, PLAIN, BOX, SHAPES };
 
-/* Finds the best of the views that are on the list for a shape. */
+/* Finds the best of the views on the list for a shape. */
 static void stand_outside(const struct site *site, enum shape shape,
                           struct camera *camera)
 {

@@ -8,9 +8,9 @@
 
 /* Returns a camera for a picture of this size. A room is seen from within, from eye
  * height near one of its corners; the subject of any other scene from outside, whole,
- * looking through backs that are black. Up is y or z. `forest` has the light, so that the
- * dark is avoided; NULL: every surface counts as lit. The choice takes only + - * / and
- * sqrt: it is the same on every rank and machine. */
+ * looking through black backs. Up is y or z. `forest` has the light, to avoid the dark;
+ * NULL: every surface counts as lit. The choice takes only + - * / and sqrt: the same on
+ * every rank and machine. */
 struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree,
                                const struct forest *forest, int width, int height);
 

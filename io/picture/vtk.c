@@ -1,6 +1,6 @@
-/* Writing VTK's legacy format: lines of text that announce arrays, and the arrays, most
- * significant bytes first. ParaView and VTK drop the properties that PLY faces have; here
- * all numbers arrive. Arrays are columns, so the leaves are walked once for each. */
+/* Writing VTK's legacy format: lines of text announcing arrays, and the arrays, most
+ * significant bytes first. ParaView and VTK drop the properties of PLY faces; here all
+ * numbers arrive. Arrays are columns, so the leaves are walked once for each. */
 #include "io/picture/vtk.h"
 
 #include <string.h>
