@@ -1,26 +1,26 @@
 /* The balance of powers: absorbed + escaped = emitted.
  *
- * The sums tell of faces that lie on each other in one plane, but are not the same: light
- * comes to both. They are not dropped, for a lamp in its ceiling or a picture on a wall
- * are such faces, too, and do no harm. Of lamps that lie on each other the sums tell
- * nothing, since both emit; rays do that fall on lamps from close above.
+ * The sums tell of different faces lying on each other in one plane: light comes to both.
+ * Such faces are not dropped, for a lamp in its ceiling or a picture on a wall are such
+ * faces, too, and do no harm. Of lamps lying on each other the sums tell nothing, since
+ * both emit; rays falling on lamps from close above do.
  *
  * A lamp may lie face to face with another surface, as the top of a box at a ceiling: the
  * light between both is absorbed there, though no row or link brings it.
  *
- * Light that escapes from a closed scene is lost. A scene counts as closed if hardly any
- * ray in a random direction from the fronts that have light leaves it (those of a house,
- * outside, are dark); of an open one, the first few do. Light that falls on black backs
- * is lost, too. */
+ * Light escaping from a closed scene is lost. A scene counts as closed if hardly any ray
+ * in a random direction from the lit fronts leaves the scene (the fronts of a house,
+ * outside, are dark); of an open one, the first few do. Light falling on black backs is
+ * lost, too. */
 #include "tools/balance.h"
 
 #include "geom/hash.h"
 #include "rad/beyond/gather/inside.h"
 #include "rad/beyond/sample.h"
 
-/* Parts of the emitted power that are warned of, absorbed beyond it or lost; the part of
- * all light that leaves surfaces, made up for in a closed scene, that is; and the ratio
- * of absorbed to emitted power above which a run has failed. */
+/* Parts to warn of: of the emitted power, absorbed in excess or lost; of all light
+ * leaving surfaces, made up for in a closed scene; and the ratio of absorbed to emitted
+ * power above which a run has failed. */
 static const double OFF = 0.01, OFF_BALANCE = 0.01, ABSURD = 1.5;
 
 /* Starts of rays over a surface, and over all others in its plane, scene units. */
@@ -29,7 +29,7 @@ static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;
 enum {
     LAMP_RAYS = 1000,  /* onto all lamps */
     LAMP_POINTS = 64,  /* of each lamp */
-    RAYS = 100000,     /* from all fronts that have light */
+    RAYS = 100000,     /* from all lit fronts */
     CRACKS = 1,        /* of these, so many may leave a closed scene */
     NOTHING = -2       /* for root_met() */
 };
@@ -71,7 +71,7 @@ static struct half_line ray_over(const struct run *run, int32_t root, uint64_t s
                               vec3_dot(d, normal) < 0.0 ? vec3_scale(d, -1.0) : d};
 }
 
-/* True if another face lies face to face with the root at that ray's beginning: from
+/* True if another face lies face to face with the root at the ray's beginning: from
  * below, its front comes before the root's back. */
 static bool touches(const struct run *run, int32_t root, uint64_t seed)
 {
@@ -83,9 +83,9 @@ static bool touches(const struct run *run, int32_t root, uint64_t seed)
            hit.front;
 }
 
-/* The share of a lamp that lies face to face with others; 0 if they are back to back, as
- * any ray from there shows that meets a front outside of things, or, of a lamp that is
- * modelled from both sides, that meets nothing. */
+/* The share of a lamp face to face with others; 0 if the faces are back to back, as shown
+ * by any ray from there to a front outside of things, or, of a lamp modelled from both
+ * sides, to nothing. */
 static double share_touching(const struct run *run, int32_t lamp)
 {
     struct model model = {.scene = run->scene, .octree = run->octree};
@@ -143,7 +143,7 @@ static bool is_under_lamp(const struct run *run, int32_t root, uint64_t seed)
            material_emits(scene_root_material(run->scene, over));
 }
 
-/* The share of the emitted power that comes from lamps under others. */
+/* The share of the emitted power from lamps under others. */
 static double share_under_lamps(const struct run *run)
 {
     const struct scene *scene = run->scene;
@@ -158,7 +158,7 @@ static double share_under_lamps(const struct run *run)
     return (double)under / LAMP_RAYS;
 }
 
-/* The area of a root that has light, and sends none between touching faces. */
+/* The area of a root if lit, and sending no light between touching faces. */
 static double lit_area(const struct run *run, int32_t root)
 {
     const struct forest *forest = run->solver->model.forest;
@@ -170,7 +170,7 @@ static double lit_area(const struct run *run, int32_t root)
                                                   : 0.0;
 }
 
-/* Fires rays from all roots that have light, evenly by area. */
+/* Fires rays from all lit roots, evenly by area. */
 static bool is_closed(const struct run *run)
 {
     int32_t roots = scene_root_count(run->scene);

@@ -11,8 +11,7 @@
 #include "io/picture/solution.h"
 
 /* Sums over all bands of all pixels or blocks of pixels, or of all leaves weighted by
- * area. Samples that are not finite on either side are counted and left out of the
- * sums. */
+ * area. Samples not finite on either side are counted and left out of the sums. */
 struct difference {
     int64_t samples;         /* all of them */
     int64_t broken;          /* not finite on one side or both */

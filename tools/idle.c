@@ -1,6 +1,5 @@
-/* Options that do nothing. A list names the options that one purpose alone makes use of;
- * the options that bound a computation are in no list, since every computation heeds
- * them. */
+/* Options that do nothing. A list names the options used for one purpose alone; the
+ * options to bound a computation are in no list, since every computation heeds them. */
 #include "tools/idle.h"
 
 enum { NAMES_MOST = 64 };
@@ -30,22 +29,22 @@ static void add(struct names *names, const char *const *list)
         names->name[names->count++] = *list;
 }
 
-/* True if the pictures show light, a mesh or links: patches that are drawn over light. */
+/* True if the pictures show light, a mesh or links: patches drawn over light. */
 static bool shows_light(const struct options *options)
 {
     return options->show == SHOW_LIGHT || options->show == SHOW_MESH ||
            options->show == SHOW_LINKS;
 }
 
-/* True if costs that are predicted move links, or are told. */
+/* True if predicted costs move links, or are told. */
 static bool predicts(const struct options *options)
 {
     return options->criterion.balance == BALANCE_GREEDY || options->stats ||
            options->verbose || options->checkpoint;
 }
 
-/* Adds the options that are of no use to the outputs. Returns true if pixels that gather
- * are among them. */
+/* Adds the options of no use to the outputs. Returns true if gathering pixels are among
+ * them. */
 static bool add_idle(const struct options *options, struct names *names)
 {
     bool pictures = false, colours = false, light = false;

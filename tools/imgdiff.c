@@ -1,11 +1,10 @@
 /* imgdiff: compares a picture, or a solution, with the expected one. A program of its
  * own, installed for users of golden pictures.
  *
- * The bound is on the largest difference, so that one wrong pixel in a large picture is
- * found, and relative to the root mean square of the expected side, so that it means the
- * same in dim scenes and in bright ones. A bound on the RMS replaces it if single pixels
- * may differ, at edges that move by a rounding. A sample that is not finite exceeds any
- * bound. */
+ * The bound is on the largest difference, to find one wrong pixel in a large picture, and
+ * relative to the root mean square of the expected side, to mean the same in dim scenes
+ * and in bright ones. A bound on the RMS replaces this one if single pixels may differ,
+ * at edges moved by a rounding. A sample not finite exceeds any bound. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -87,7 +87,7 @@ static bool check_emission(const struct run *run, struct error *error)
     return true;
 }
 
-/* Refuses options that ask for files of a computation, or for links. */
+/* Refuses options for files of a computation, or for links. */
 static bool check_stored(struct run *run)
 {
     static const char *const FILES[] = {"--stats",      "--save-links", "--load-links",
@@ -166,7 +166,7 @@ static bool read_file(struct run *run, struct obj_repairs *repairs)
     return good;
 }
 
-/* Adds the sky that is asked for, or one that makes a scene without lamps visible. */
+/* Adds the sky asked for, or one to make a scene without lamps visible. */
 static void add_sky(struct run *run)
 {
     struct scene *scene = run->scene;

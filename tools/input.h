@@ -6,8 +6,8 @@
 
 /* Collective. Rank 0 reads run->scene, prepared, and run->cameras as the options say,
  * warns of repairs, and probes the outputs; all receive scene, octree and cameras. False
- * on an error (a wrong file, a scene without light, an output that cannot be written, a
- * --show that cannot be), which is in run->error, on all ranks. */
+ * on an error (a wrong file, a scene without light, an output that cannot be written, an
+ * impossible --show), which is in run->error, on all ranks. */
 bool input_broadcast(struct run *run);
 
 #endif

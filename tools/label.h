@@ -10,7 +10,7 @@ enum { LABEL_SIZE = 32 };
 /* Writes the name with its final 0. Pre: id_is_valid(id). Returns `text`. */
 const char *label_write(struct patch_id id, char text[LABEL_SIZE]);
 
-/* Reads a name. False if it is none, or has more than ID_MAX_LEVEL steps. */
+/* Reads a name. False for other text, or for more than ID_MAX_LEVEL steps. */
 bool label_read(const char *text, struct patch_id *id);
 
 #endif

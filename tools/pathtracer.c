@@ -7,7 +7,7 @@
  *   imgdiff room.ply truth.ply -o error.ply
  *
  * Options of scene, camera and files are phr's; --samples is the number of paths a pixel,
- * or a leaf. With --leaves the output is a mesh with the leaves of that solution, each
+ * or a leaf. With --leaves the output is a mesh with the leaves of this solution, each
  * with the mean of E + rho H over it, and the norms of the solution's error are printed,
  * as in tests/deviation.h: of the reflected light rho H alone, since E is given and would
  * hide any error; so black lamps are left out.
@@ -72,8 +72,7 @@ static bool take_own(struct tracing *tracing, int *argc, char **argv)
     return run->error.code == EXIT_DONE;
 }
 
-/* Checks the outputs: there has to be one, and meshes need --leaves and it needs a
- * mesh. */
+/* Checks the outputs: there has to be one; meshes need --leaves, and --leaves a mesh. */
 static bool check_outputs(struct tracing *tracing)
 {
     struct run *run = tracing->run;
@@ -228,7 +227,7 @@ static double over(double a, double b)
     return b > 0.0 ? a / b : 0.0;
 }
 
-/* Prints the norms over all leaves that reflect. */
+/* Prints the norms over all reflecting leaves. */
 static void print_norms(const struct tracing *tracing, const float *halves)
 {
     const struct solution_mesh *solution = &tracing->solution;

@@ -6,7 +6,7 @@
 #include "rad/beyond/paths.h"
 
 /* Returns an estimate of the mean radiosity E + rho H, W/m^2, seen through pixel (x, y)
- * of a picture; a path that meets nothing, or a back, is black. Its expectation is exact.
+ * of a picture; a path meeting nothing, or a back, is black. Its expectation is exact.
  * Pre: samples > 0. */
 struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
                             const struct camera *camera, int x, int y, int samples,

@@ -15,7 +15,7 @@ void report_solving(struct run *run);
 /* Collective. With --verbose: prints the levels of refinement from number `first` on. */
 void report_levels(struct run *run, int64_t first);
 
-/* Print the pass that has ended, and with --accuracy the error of a round. */
+/* Print the pass just ended, and with --accuracy the error of a round. */
 void report_iteration(struct run *run);
 void report_round(struct run *run);
 

@@ -1,7 +1,7 @@
 /* Pictures and meshes of the solution. An output depends on the solution and on its own
  * options alone: the colours of a mesh have the exposure of its leaves, also where there
- * are pictures. Pictures are written view by view, so that many views take no more memory
- * than one. */
+ * are pictures. Pictures are written view by view, so many views take no more memory than
+ * one. */
 #include "tools/results.h"
 
 #include "geom/alloc.h"
@@ -60,8 +60,8 @@ static void write_meshes(struct run *run, const struct shading *shading)
     alloc_free(colours);
 }
 
-/* Prepares the shading of all leaves, with `rest` without the light that comes straight
- * from lamps. */
+/* Prepares the shading of all leaves, with `rest` without the light straight from
+ * lamps. */
 static struct shading *shade_leaves(struct run *run, bool rest)
 {
     const struct forest *forest = run->solver->model.forest;
@@ -171,7 +171,7 @@ static bool show_meshes(struct run *run)
 
 /* Sets radiosities of leaves below 0, which conjugate residuals may leave in the dark
  * within their tolerance, to 0. Without any nothing changes. (Where the steps go on from
- * these, as between passes, the same would be an error that they cannot see.) */
+ * these, as between passes, zeros would be an error unseen by the steps.) */
 static void clamp_radiosities(struct forest *forest)
 {
     bool below = false;

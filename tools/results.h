@@ -4,7 +4,7 @@
 
 #include "tools/run.h"
 
-/* Collective. Renders and writes the outputs that the options name. False on an error, on
+/* Collective. Renders and writes the outputs named by the options. False on an error, on
  * all ranks. From then on no radiosity is below 0. */
 bool results_show(struct run *run);
 

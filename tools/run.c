@@ -26,7 +26,7 @@ void run_say(struct run *run, const char *format, ...)
     va_end(arguments);
 }
 
-/* Errors of outputs that are not made, on rank 0. */
+/* Errors of outputs not made, on rank 0. */
 static struct error *lost;
 static int lost_count;
 

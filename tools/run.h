@@ -1,5 +1,5 @@
-/* One run of phr: its state, and the errors and lines on stderr that all its parts
- * share. */
+/* One run of phr: its state, and the errors and lines on stderr shared by all its
+ * parts. */
 #ifndef TOOLS_RUN_H
 #define TOOLS_RUN_H
 
@@ -29,7 +29,7 @@ struct run {
     double first_bound;            /* vote.remaining of the first iteration of a pass */
 };
 
-/* Returns the number of cameras: those of the views, or one that is chosen. */
+/* Returns the number of cameras: the views', or one chosen. */
 static inline int run_camera_count(const struct run *run)
 {
     return run->options.view_count > 0 ? run->options.view_count : 1;
@@ -42,35 +42,35 @@ __attribute__((format(printf, 2, 3)))
 void run_say(struct run *run, const char *format, ...);
 
 /* On rank 0 alone. Keeps the error of an output, if there is one, for run_end(): the run
- * goes on. Where it is asked to stop, the error is that of the run. */
+ * goes on. If asked to stop, the error is the run's. */
 void run_lose(struct run *run, const struct error *error);
 
 /* Collective. Starts MPI, which may take arguments, and the clock; catches signals. False
- * if the ranks have different arguments: they decide alike from here on. */
+ * if the ranks have different arguments: all decide alike from here on. */
 bool run_start(struct run *run, int *argc, char ***argv);
 
-/* Collective. Reads the options, and shows progress unless they say --quiet. */
+/* Collective. Reads the options, and shows progress unless --quiet is given. */
 bool run_parse(struct run *run, int argc, char **argv);
 
-/* Collective. Prints the errors of the run and of its outputs, by which all ranks have
- * an error then, frees all that the run has, and stops MPI. Returns the exit status. */
+/* Collective. Prints the errors of the run and of its outputs, by which all ranks have an
+ * error then, frees all that the run has, and stops MPI. Returns the exit status. */
 int run_end(struct run *run);
 
 /* Collective. Frees all that a run owns but its ranks. */
 void run_free(struct run *run);
 
-/* Returns the last part of the path of the scene, at most 60 characters of it, with '?'
- * for those that are not of ASCII, or need a backslash somewhere. */
+/* Returns the last part of the path of the scene, at most 60 characters, with '?' for
+ * characters not of ASCII, or in need of a backslash somewhere. */
 const char *run_scene_name(const struct run *run);
 
 /* Lets outputs name the scene and the settings of light. Pre: the scene is prepared. */
 void run_set_note(const struct run *run);
 
-/* Sets the error of a run that a signal stops. Returns false. */
+/* Sets the error of a run stopped by a signal. Returns false. */
 bool run_stopped(struct run *run, int signal);
 
 /* Collective. Gives all ranks the error of one of them, if any has one; false then. On a
- * rank that was asked to stop, the signal is the error. */
+ * rank asked to stop, the signal is the error. */
 bool run_agree(struct run *run);
 
 /* Collective. Ends a phase that can be stopped: false if a rank was asked to stop or has

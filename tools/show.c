@@ -102,7 +102,7 @@ static struct rgb hue(double turn)
     return colour;
 }
 
-/* The error that is shown white: three times the RMS, by area, W/m^2. */
+/* The error shown white: three times the RMS, by area, W/m^2. */
 static double error_scale(const struct forest *forest, const float *error)
 {
     double sum = 0.0, area = 0.0;
@@ -200,7 +200,7 @@ static double outline_of(const struct forest *forest, int32_t leaf)
     return 0.7 - 0.6 * id_level(forest->patches[leaf].id) / ID_MAX_LEVEL;
 }
 
-/* Darkens the pixels that have another leaf to the right or below. */
+/* Darkens the pixels with another leaf to the right or below. */
 static void draw_outlines(const struct run *run, const struct camera *camera,
                           const int32_t *leaves, float *picture)
 {
@@ -221,8 +221,8 @@ static void draw_outlines(const struct run *run, const struct camera *camera,
 
 /* --- links --- */
 
-/* The links over which light comes to a patch: its own, and those of the patches and
- * clusters above it. */
+/* The links over which light comes to a patch: its own, and the links of the patches and
+ * clusters above. */
 struct found_links {
     const struct model *model;
     const int32_t *order; /* local numbers of patches, by their numbers in links */
@@ -280,7 +280,7 @@ static struct vec3 middle_of(const struct model *model, int32_t node)
     return vec3_scale(vec3_add(cluster->low, cluster->high), 0.5);
 }
 
-/* The power that a link brings, over all bands. */
+/* The power brought by a link, over all bands. */
 static double power_of(const struct model *model, const struct link *link)
 {
     const struct rgb *b = node_is_cluster(link->q)
@@ -374,8 +374,8 @@ static int32_t find_patch(const struct forest *forest, struct patch_id id)
     return p;
 }
 
-/* The patch that --show links names, or that stands at the pixel which it names. On
- * rank 0; -1 and an error: there is none. */
+/* The patch named by --show links, or at the pixel named there. On rank 0; -1 and an
+ * error: there is none. */
 static int32_t named_patch(struct run *run, const struct camera *camera,
                            const int32_t *leaves)
 {
@@ -405,7 +405,7 @@ static bool overlay_links(struct run *run, const struct camera *camera,
     if (good) {
         char name[LABEL_SIZE];
         const struct model *model = &run->solver->model;
-        if (model->clusters) /* a finished run that was resumed has none of it */
+        if (model->clusters) /* a finished run, resumed, has none of this light */
             cluster_light_average(model->clusters, model->forest,
                                   model->forest->radiosity, model->clusters->radiosity);
         links_collect(run->solver, find_links, &found);

@@ -7,7 +7,7 @@
 
 /* On rank 0, when scene and cameras are read. True unless the contents of pictures cannot
  * be there: errors without a final gather, owners and links of a stored solution, links
- * of a root or a pixel that there is not. Sets the error then. */
+ * of a missing root or pixel. Sets the error then. */
 bool show_check(struct run *run);
 
 /* Colours of leaves by --show owner, level or error, [patches], linear, to be freed with

@@ -26,7 +26,7 @@ static void put_links(void *context, const struct link *links, const int *owners
     store_put_links(context, links, count);
 }
 
-/* Warns of a file that is lost: the run goes on. */
+/* Warns of a lost file: the run goes on. */
 static void lose(struct run *run, const struct error *error)
 {
     if (error->code != EXIT_DONE && !stop_is_asked())
@@ -100,7 +100,7 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
 static void warn_of_rays(struct run *run, int asked)
 {
     int rays = run->solver->model.criterion.final_gather;
-    if (run->options.pixel_rays == 0 && rays != asked) /* they are asked for by number */
+    if (run->options.pixel_rays == 0 && rays != asked) /* rays are asked for by number */
         run_say(run, "warning: no use is made of --final-gather %d: --accuracy has come "
                 "to %d", asked, rays);
 }
@@ -111,7 +111,7 @@ bool stored_load(struct run *run, enum store_kind kind, const char *path)
     int asked = run->solver->model.criterion.final_gather;
     struct store_terms terms = terms_of(run, kind);
     struct store_reader reader = {0};
-    if (!run_goes_on(run)) /* a tree that a signal has ended is not that of the file */
+    if (!run_goes_on(run)) /* a tree ended by a signal is not the file's */
         return false;
     if (run->comm.rank == 0) {
         signals_end_calls(true); /* of a pipe, too */
@@ -150,7 +150,7 @@ static void share_solution(struct run *run)
     comm_broadcast(&run->comm, solution->leaves, count * sizeof *leaves);
 }
 
-/* The answer of the final gather, as it is stored, for light at any point. */
+/* The answer of the final gather, as stored, for light at any point. */
 static void restore_answer(struct solver *solver, const struct solution_mesh *solution)
 {
     struct forest *forest = solver->model.forest;

@@ -10,7 +10,7 @@
 bool stored_save(struct run *run, enum store_kind kind, const char *path);
 
 /* Collective. Before the final gather: makes the checkpoint that no pass has made, as of
- * a run resumed when it was finished, or tells the reason for none. False as above. */
+ * a run resumed when finished, or tells the reason for none. False as above. */
 bool stored_complete(struct run *run);
 
 /* Collective. Reads a state. Pre: homes are not assigned. False on an error, on all
