@@ -2,11 +2,11 @@
  * every form factor of phr against exact answers. A program of its own, installed for
  * users of heat balances.
  *
- * Scenes are read as phr reads them, and no light is computed.
+ * Scenes are read as by phr, and no light is computed.
  *
- * With --accuracy, pairs of groups that are not good enough are done again with a smaller
- * epsilon, at most ROUNDS times: each round costs several times the one before, so that
- * those before cost little. */
+ * With --accuracy, pairs of groups not good enough are done again with a smaller epsilon,
+ * at most ROUNDS times: each round costs several times the one before, so earlier rounds
+ * cost little. */
 #include <string.h>
 
 #include "geom/stop.h"
@@ -28,7 +28,7 @@ static const char HELP[] =
     "  --quiet  --verbose  --help  --version\n"
     "Exit status: 0 done; 1 failed, stopped, worse than stated; 2 bad usage or input.\n";
 
-/* The options of phr that are options here, too. */
+/* The options of phr valid here, too. */
 static const char *const OPTIONS[] = {
     "--epsilon", "--accuracy", "--max-level", "--two-sided", "--two-sided-lamps",
     "--quiet", "--verbose", "--help", "--version", NULL};
@@ -38,8 +38,8 @@ static const double EPSILON = 1e-2;
 
 enum { ROUNDS = 12, STUCK_MOST = 2 };
 
-/* An error that is not below this part of the last round's, in STUCK_MOST rounds one
- * after another, no longer falls. */
+/* An error not below this part of the last round's, in STUCK_MOST rounds one after
+ * another, no longer falls. */
 static const double STUCK = 0.95;
 
 /* Adds all pairs, in rounds. Returns the largest error of F; stops at a signal. */

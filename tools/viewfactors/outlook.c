@@ -13,7 +13,7 @@ void outlook_start(struct outlook *outlook, struct vec3 from, const struct trian
 }
 
 /* Height over a plane through the point; 0 within rounding, which would leave slivers
- * along each side that two triangles share. */
+ * along each common side of two triangles. */
 static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner)
 {
     static const double ROUNDING = 1e-13; /* scene units */
@@ -21,8 +21,8 @@ static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner
     return rise > ROUNDING || rise < -ROUNDING ? rise : 0.0;
 }
 
-/* Cuts a piece along a plane through the point: the parts above and below it, without
- * corners where there is none. */
+/* Cuts a piece along a plane through the point: the parts above and below the plane,
+ * without corners where there is none. */
 static void split_piece(const struct outlook_piece *piece, struct vec3 from,
                         struct vec3 normal, struct outlook_piece *above,
                         struct outlook_piece *below)
@@ -58,7 +58,7 @@ void outlook_keep_above(struct outlook *outlook, struct vec3 normal)
     }
 }
 
-/* True if a piece lies outside of one of the planes: nothing of it is hidden. */
+/* True if a piece lies outside of one of the planes: no part is hidden. */
 static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
                        const struct vec3 normal[3])
 {
@@ -72,8 +72,7 @@ static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
     return false;
 }
 
-/* Cuts a piece; the last one takes its place, the pieces of it that are seen come to the
- * end. */
+/* Cuts a piece; the last one takes its place, its visible pieces come to the end. */
 static void cut_piece(struct outlook *outlook, int i, const struct vec3 normal[3])
 {
     struct outlook_piece inside[2];

@@ -1,4 +1,4 @@
-/* The part of a triangle that is seen from a point past other triangles, exactly. */
+/* The part of a triangle visible from a point past other triangles, exactly. */
 #ifndef TOOLS_VIEWFACTORS_OUTLOOK_H
 #define TOOLS_VIEWFACTORS_OUTLOOK_H
 
@@ -28,9 +28,9 @@ void outlook_start(struct outlook *outlook, struct vec3 from, const struct trian
  * before any part is hidden. */
 void outlook_keep_above(struct outlook *outlook, struct vec3 normal);
 
-/* Takes away the part that is hidden behind another triangle, which has to lie in front
- * of the first one's plane, as the point does. Leaves a piece whole where pieces or
- * corners would be too many, and returns false then. */
+/* Takes away the part hidden behind another triangle, which has to lie in front of the
+ * first one's plane, as the point does. Leaves a piece whole where pieces or corners
+ * would be too many, and returns false then. */
 bool outlook_hide(struct outlook *outlook, const struct triangle *behind);
 
 #endif

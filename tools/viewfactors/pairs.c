@@ -1,12 +1,11 @@
-/* Pairs of roots, dealt like cards: the k-th pair that faces each other goes to rank k
- * mod P.
+/* Pairs of roots, dealt like cards: the k-th facing pair goes to rank k mod P.
  *
- * Neighbours in this order cost about the same, so that each rank gets its part of the
+ * Neighbours in this order cost about the same, so each rank gets its part of the
  * expensive pairs, and a scene of a dozen triangles is divided as evenly as a large one.
  * To count, every rank goes through all pairs, a thousandth of the work. Sums are
- * integers, so they do not depend on the ranks that add. They are sent in pieces that MPI
- * can count. After each TURN pairs of every rank all learn whether one of them has got a
- * signal: the deal is the same on all ranks, so they meet there. */
+ * integers, independent of the adding ranks, and sent in pieces that MPI can count. After
+ * each TURN pairs of every rank all learn whether one has got a signal: the deal is the
+ * same on all ranks, so all meet there. */
 #include "tools/viewfactors/pairs.h"
 
 #include "geom/alloc.h"

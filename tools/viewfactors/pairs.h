@@ -6,10 +6,10 @@
 #include "mpi/comm.h"
 #include "tools/viewfactors/viewfactor.h"
 
-/* Collective. Adds all pairs of roots that face each other to `factors`, which are equal
- * on all ranks and new, or taken back in part by viewfactors_refine(). All ranks end with
- * the same exchanges; counts and links are those of the rank alone. Ticks `progress`,
- * which may be NULL. Ends early, on all ranks, if one is asked to stop. */
+/* Collective. Adds all pairs of roots facing each other to `factors`, which are equal on
+ * all ranks and new, or taken back in part by viewfactors_refine(). All ranks end with
+ * the same exchanges; counts and links are the rank's alone. Ticks `progress`, which may
+ * be NULL. Ends early, on all ranks, if one is asked to stop. */
 void pairs_add(const struct comm *comm, struct viewfactors *factors,
                struct progress *progress);
 

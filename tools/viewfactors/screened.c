@@ -1,29 +1,30 @@
 /* Past few blockers.
  *
  * With F(x) the form factor from a point x of one triangle, the viewer, to the other, the
- * target, and S(x) that of the part of the target which x sees past the screens, known
- * exactly (outlook.h),
+ * target, and S(x) the form factor to the part of the target visible from x past the
+ * screens, known exactly (outlook.h),
  *
  *     G = integral over the viewer of S(x) dA
  *       = G without screens  -  integral over the viewer of (F - S)(x) dA.
  *
  * Whichever is smaller is integrated, by three points, exact to the second degree, and
  * again by three in each quarter; where the two differ by more than the tolerance, each
- * quarter is treated alike. The difference is the error of the coarser sum: that of the
- * finer one, which is kept, is a part of it, so that the sum of the differences is an
- * upper limit. S is continuous but for common edges, with kinks along the lines where the
- * edge of a shadow passes an edge of the target, so that only parts on these lines are
- * divided deeply.
+ * quarter is treated alike. The difference is the error of the coarser sum: the error of
+ * the finer one, which is kept, is a part of the difference, so the sum of the
+ * differences is an upper limit. S is continuous but for common edges, with kinks along
+ * the lines where the edge of a shadow passes an edge of the target, so only parts on
+ * these lines are divided deeply.
  *
- * A screen close to the viewer casts its shadow on a small part of it, which points may
- * miss: such a part is divided until it is worth no more than the tolerance. Points that
- * all see nothing, or all of the target, prove nothing; that is told to the caller.
+ * A screen close to the viewer casts its shadow on a small part of the viewer, which
+ * points may miss: such a part is divided until its light is worth no more than the
+ * tolerance. If all points see nothing, or all of the target, nothing is proved; the
+ * caller is told.
  *
  * Rejected: points on both triangles (16 segments, as for light), where a shadow's edge
- * costs digits twice; random points, which know their error well and are a hundred times
- * as many; the larger triangle as the viewer, whose points are far apart for the distance
- * of the target; the views from both triangles, held against each other: most pairs for
- * which they differed were those where the larger one was wrong. */
+ * costs digits twice; random points, with a well-known error, but a hundred times as
+ * many; the larger triangle as the viewer, whose points are far apart for the distance of
+ * the target; the views from both triangles, held against each other: where the two
+ * differed, mostly the larger triangle's was wrong. */
 #include "tools/viewfactors/screened.h"
 
 #include <math.h>
@@ -37,12 +38,11 @@ enum { DEEPEST = 7 }; /* quarterings of the viewer at most */
 /* The part of the light of a part of the viewer that its points may miss. */
 static const double MISSED = 0.03;
 
-/* The part of the error of the integral of S that counts for that of F - S, and the other
- * way round. */
+/* The part of the error of the integral of S counted for F - S, and the other way
+ * round. */
 static const double OTHER = 0.25;
 
-/* Numbers that differ by rounding count as equal, lest a rotated scene gets other
- * parts. */
+/* Numbers different by rounding count as equal, lest a rotated scene gets other parts. */
 static const double ROUNDED = 1.0 + 1e-6;
 
 /* The part of a blocker in front of both planes. */
@@ -168,7 +168,7 @@ static struct light integrate(struct view *view, const struct triangle *part)
 
 /* --- parts --- */
 
-/* The integral that is taken, of S or of F - S. */
+/* The integral taken, of S or of F - S. */
 struct way {
     struct view *view;
     bool by_hidden; /* F - S is integrated */
@@ -183,7 +183,7 @@ struct zone {
     int level; /* quarterings from the whole viewer */
 };
 
-/* The parts of a part of the viewer, and what they add up to. */
+/* The parts of a part of the viewer, and their sum. */
 struct quarters {
     struct zone part[4];
     struct light sum;
@@ -208,8 +208,8 @@ static double light_of(const struct way *way, struct light light)
     return way->by_hidden ? light.hidden : light.seen;
 }
 
-/* Returns the limit of the error of a part. The integral that is not taken has a say, as
- * now and then two sums agree by chance. */
+/* Returns the limit of the error of a part. The integral not taken has a say, as now and
+ * then two sums agree by chance. */
 static double error_of(const struct way *way, struct light coarse, struct light fine)
 {
     double seen = fabs(fine.seen - coarse.seen),

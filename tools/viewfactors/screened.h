@@ -8,14 +8,14 @@ enum { SCREENS_MAX = 24 };
 
 struct screened {
     double exchange; /* G with visibility, square units of the coordinates */
-    double error;    /* of it, at most, as the points tell */
-    bool agreed;     /* all points see all of the target, or nothing of it */
+    double error;    /* of the exchange, at most, as told by points */
+    bool agreed;     /* all points see all of the target, or nothing */
 };
 
 /* Sets the exchange of p and q with the triangles blockers[0 .. count - 1] in the way;
- * `open` is that without them. `tolerance` is the error at which parts of a triangle are
- * no longer divided. Pre: facets_face(p, q), count <= SCREENS_MAX. False if the parts of
- * a triangle that a point sees are too many. */
+ * `open` is the exchange without blockers. `tolerance` is the error at which parts of a
+ * triangle are no longer divided. Pre: facets_face(p, q), count <= SCREENS_MAX. False if
+ * a point sees too many parts of a triangle. */
 bool screened_exchange(const struct facet *viewer, const struct facet *target,
                        const struct triangle *triangles, const int32_t *blockers,
                        int32_t count, double open, double tolerance,

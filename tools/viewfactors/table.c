@@ -1,8 +1,8 @@
 /* Form factors as CSV.
  *
- * 17 digits represent each double exactly, so that A_i F_ij and A_j F_ji, read back, are
- * equal but for the rounding of one division. The sum of a row adds its printed factors,
- * in their order. */
+ * 17 digits represent each double exactly, so A_i F_ij and A_j F_ji, read back, are equal
+ * but for the rounding of one division. The sum of a row adds its printed factors, in
+ * their order. */
 #include "tools/viewfactors/table.h"
 
 #include <string.h>

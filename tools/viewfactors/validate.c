@@ -5,13 +5,13 @@
  *     disk 1     one ray: A A' cos cos' / (pi r^2 + max(A, A')) between the centroids
  *     disk 16    the same between 4 x 4 sub-areas, by rad/formfactor.c
  *     polygon    Lambert's formula from the centroids of the 4 children of the smaller
- *                patch to the larger one; from 12 points if they are near
+ *                patch to the larger one; from 12 points if near
  *     exact      the contour integral of geom/contour.c
  *
- * The first three work on triangles: a quadrilateral is two of them, and pairs add. Their
- * error depends on the distance of the centres in sums of the radii, so each states its
- * error from some distance on. Errors of nearer pairs, which the solver has to split, are
- * shown in brackets.
+ * The first three work on triangles: a quadrilateral is two triangles, and pairs add.
+ * Their error depends on the distance of the centres in sums of the radii, so each states
+ * its error from some distance on. Errors of nearer pairs, which the solver has to split,
+ * are shown in brackets.
  *
  * Polygons are scaled into the unit cube, in which the solver works, too. */
 #include "tools/viewfactors/validate.h"
@@ -163,7 +163,7 @@ struct estimate {
     struct promise promise[PROMISES]; /* nearest first */
 };
 
-/* Measured errors and up to a quarter more; that of `exact` is stated in
+/* Measured errors and up to a quarter more; the error of `exact` is stated in
  * geom/contour.h. */
 static const struct estimate ESTIMATES[METHODS] = {
     {"disk 1", by_one_disk, 2, {{1.0, 0.3, 1.0}, {3.0, 0.02, 1.0}}},
@@ -211,8 +211,8 @@ static bool is_kept(const struct promise *promise, const struct prepared *pair,
                                            fabs(outcome->absolute) <= promise->absolute);
 }
 
-/* Prints an error in per cent, or as a power of ten if it is small; in brackets if none
- * is stated. */
+/* Prints an error in per cent, or as a power of ten if small; in brackets if none is
+ * stated. */
 static void print_error(FILE *file, double error, bool stated)
 {
     char number[20], cell[24];
@@ -268,7 +268,7 @@ static void print_spread(FILE *file, const struct estimate *estimate,
     alloc_free(errors);
 }
 
-/* Prints a line for a stated error. Returns true if it holds. */
+/* Prints a line for a stated error. Returns true if the statement holds. */
 static bool print_promise(FILE *file, const struct estimate *estimate,
                           const struct promise *promise, const struct outcome *outcomes)
 {
@@ -338,7 +338,7 @@ struct point_case {
     struct vec3 x;      /* m */
     struct vec3 normal; /* 1 */
     double exact;       /* lx */
-    double printed;     /* lx, as the report rounds it */
+    double printed;     /* lx, as rounded in the report */
 };
 
 static const struct point_case POINT_CASES[] = {
@@ -358,7 +358,7 @@ enum { POINT_CASE_COUNT = sizeof POINT_CASES / sizeof POINT_CASES[0] };
 static const struct vec3 CIE_LIGHT[4] = {
     {1.5, 1.5, 3}, {1.5, 2.5, 3}, {2.5, 2.5, 3}, {2.5, 1.5, 3}};
 
-/* The error that geom/lambert.h states. */
+/* The error stated in geom/lambert.h. */
 static const double POINT_BOUND = 1e-9;
 
 static bool print_points(FILE *file)

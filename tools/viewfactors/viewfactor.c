@@ -4,13 +4,14 @@
  * and T a threshold:
  *
  *   - if G is at most T, the exchange is G times the visible fraction of 16 segments,
- *     weighted by the light that they would carry; exact if nothing is in the shaft;
+ *     weighted by the light of each; exact if nothing is in the shaft;
  *   - if not, the triangles in the shaft between the two are listed. None: the exchange
- *     is G, for patches of any size. Few: it is found from points of the smaller patch,
- *     each of which knows exactly what it sees past them (screened.h), within a
- *     tenth of T for each part of the patch. More, or points of a strong pair that all
- *     see nothing, or all, without a proof: it is the sum over the four children of the
- *     larger patch. One wall between all corners proves that it is 0.
+ *     is G, for patches of any size. Few: the exchange is found from points of the
+ *     smaller patch, each of which knows exactly what it sees past the triangles
+ *     (screened.h), within a tenth of T for each part of the patch. More, or a strong
+ *     pair whose points all see nothing, or all, without a proof: the exchange is the
+ *     sum over the four children of the larger patch. One wall between all corners
+ *     proves an exchange of 0.
  *
  * So scenes without blockers are exact at any epsilon, a file of a few polygons takes
  * milliseconds, and patches shrink only where much stands between them.
@@ -22,19 +23,19 @@
  * where each faint pair costs as much as a strong one.
  *
  * The error of a factor. Each sampled pair has random ends of its own, so variances add:
- * that of a fraction is told by the spread of its four ends on either side, which is more
- * than stratified ends deserve, and not less than the square of a tenth and of the factor
- * between the two patches: a few segments carry most of the light of near ones. Where a
- * patch is in part behind the other's plane, few segments count, or none. What
- * points know exactly has an upper limit (screened.c), which counts as three
- * standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its standard error
- * at most: 2 for one factor, 5.5 for half a million.
+ * the variance of a fraction is told by the spread of its four ends on either side, which
+ * is more than stratified ends deserve, and not less than the square of a tenth and of
+ * the factor between the two patches: a few segments carry most of the light of near
+ * ones. Where a patch is in part behind the other's plane, few segments count, or none.
+ * Exchanges known exactly by points have an upper limit of error (screened.c), which
+ * counts as three standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its
+ * standard error at most: 2 for one factor, 5.5 for half a million.
  *
  * The ends of the segments are random (hashed from the IDs of the patches, so always the
  * same): walls at halves and quarters of each other cast shadows exactly through the
  * centres of patches at every level. With ends at the centres, all these ties would be
- * decided the same way, so that the error would fall only with the size of the patches;
- * and the decision would depend on the last bit, so that a rotated scene would get other
+ * decided the same way, and the error would fall only with the size of the patches; and
+ * the decision would depend on the last bit, so a rotated scene would get other
  * factors. */
 #include "tools/viewfactors/viewfactor.h"
 
@@ -48,19 +49,19 @@
 #include "geom/contour.h"
 #include "tools/viewfactors/screened.h"
 
-/* Part of the threshold that a part of a patch may be off past few blockers. */
+/* Greatest error of a part of a patch past few blockers, in parts of the threshold. */
 static const double FINER = 0.1;
 
-/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree that carry
- * the same light, of one on which points agree that know exactly what they see, and of
- * one of which no segment tells. */
+/* Standard error of a visible fraction: of 0 or 1 by the agreement of 16 segments with
+ * the same light, of 0 or 1 by the agreement of points with exact views, and of one of
+ * which no segment tells. */
 static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02, ERROR_UNKNOWN = 0.5;
 
 /* Standard errors in a limit. */
 static const double LIMIT = 3.0;
 
 /* No error but 0 is stated below this one: there, differences of sums tell little, and
- * sums over parts are as good as this, as a part of them. */
+ * sums over parts are as good as this, relative to the sums. */
 static const double LEAST = 1e-5;
 
 /* A patch of a pair. */
@@ -77,13 +78,13 @@ struct root_pair {
     int64_t sum;            /* exchange of the parts added so far */
     double variance;        /* of those sampled, square scene units squared */
     double error;           /* limit of those past screens, square scene units */
-    int32_t blocker;        /* the last triangle that stopped a segment */
+    int32_t blocker;        /* the last triangle to stop a segment */
 };
 
-/* The visible part of an exchange as 16 segments find it. */
+/* The visible part of an exchange as found by 16 segments. */
 struct visible {
     double fraction; /* 0 to 1, and exactly 0 or 1 if all agree */
-    double variance; /* of the fraction, of which it is a random sample */
+    double variance; /* of the fraction as a random sample */
 };
 
 struct viewfactors *viewfactors_create(const struct scene *scene,
@@ -154,9 +155,9 @@ static void points_of(const struct piece *piece, uint64_t seed,
     }
 }
 
-/* Returns the light that a segment carries, up to a constant: cos cos' / (pi r^2 + A),
- * with A a quarter of the larger area, so that close ends do not outweigh all others. 0
- * below a horizon. */
+/* Returns the light carried by a segment, up to a constant: cos cos' / (pi r^2 + A), with
+ * A a quarter of the larger area, lest close ends outweigh all others. 0 below a
+ * horizon. */
 static double weight_of(const struct piece *p, const struct piece *q, struct vec3 x,
                         struct vec3 y)
 {
@@ -187,9 +188,9 @@ static double squares_of(const double *numbers)
     return sum;
 }
 
-/* Returns the visible fraction of 16 segments; `otherwise` if none of them faces both
- * patches. The segments of one end have it in common, so that there are 4 and 4
- * independent numbers, not 16; fewer, where some ends carry most of the light. */
+/* Returns the visible fraction of 16 segments; `otherwise` if no segment faces both
+ * patches. Segments have ends in common, so there are 4 and 4 independent numbers, not
+ * 16; fewer, where some ends carry most of the light. */
 static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
                                   const struct piece *q, double otherwise)
 {
@@ -236,8 +237,8 @@ static struct piece piece_child(const struct piece *piece, int child)
     return part;
 }
 
-/* Returns the side of the larger patch, 0 or 1, or -1 if neither may be split. Areas that
- * differ by rounding count as equal, lest a rotated scene gets other patches. */
+/* Returns the side of the larger patch, 0 or 1, or -1 if neither may be split. Areas
+ * different by rounding count as equal, lest a rotated scene gets other patches. */
 static int side_to_split(const struct root_pair *pair, const struct piece *p,
                          const struct piece *q)
 {

@@ -1,9 +1,9 @@
 /* View factors between the groups of a scene, with blockers.
  *
- * F_ij (1) is the fraction of the light that leaves the fronts of group i evenly and
- * arrives first on the fronts of group j. Exchange areas are stored, G_ij = A_i F_ij =
- * A_j F_ji: one number for both directions, so reciprocity is exact; it is a sum of
- * integers (rad/flux.h), so it does not depend on ranks or order. */
+ * F_ij (1) is the fraction of the light leaving the fronts of group i evenly that arrives
+ * first on the fronts of group j. Exchange areas are stored, G_ij = A_i F_ij = A_j F_ji:
+ * one number for both directions, so reciprocity is exact; each is a sum of integers
+ * (rad/flux.h), independent of ranks and order. */
 #ifndef TOOLS_VIEWFACTORS_VIEWFACTOR_H
 #define TOOLS_VIEWFACTORS_VIEWFACTOR_H
 
@@ -37,10 +37,10 @@ struct viewfactors *viewfactors_create(const struct scene *scene,
                                        int max_level);
 void viewfactors_destroy(struct viewfactors *factors);
 
-/* Adds the exchange of the roots p < q to that of their groups. It is exact where
- * visibility is proved, and all but exact past few triangles. Elsewhere it is refined
- * until the exchange of two patches in doubt is at most epsilon times the area of the
- * smaller group, or max_level is reached.
+/* Adds the exchange of the roots p < q to their groups' exchange. The result is exact
+ * where visibility is proved, and all but exact past few triangles. Elsewhere pairs are
+ * refined until the exchange of two patches in doubt is at most epsilon times the area of
+ * the smaller group, or max_level is reached.
  * Pre: facets_face(fp, fq). */
 void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
                      int32_t q, const struct facet *fq);
@@ -52,9 +52,9 @@ double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t 
  * exact. */
 double viewfactors_error(const struct viewfactors *factors);
 
-/* Makes epsilon smaller and takes back all pairs of groups whose error makes that of all
- * F larger than `accuracy`, so that they can be added again; the others are done, and
- * adding to them does nothing. Pre: viewfactors_error() > accuracy > 0. */
+/* Makes epsilon smaller and takes back all pairs of groups whose error makes the error of
+ * all F larger than `accuracy`, to be added again; the other pairs are done, and adding
+ * to these does nothing. Pre: viewfactors_error() > accuracy > 0. */
 void viewfactors_refine(struct viewfactors *factors, double accuracy);
 
 #endif
