@@ -20,7 +20,7 @@ calls_to_form_factor      6     7
 includes_of_beyond        0     0
 ground_floor_lines     4249  4500
 source_lines          29700 16000
-test_lines            33853 16000
+test_lines            33880 16000
 long_lines                0     0
 what_per_1000_words     1.4     2
 large_structs             2     0
