@@ -1,4 +1,5 @@
-# Reads C files and prints figures of them: "what" per 1,000 words of comments, structs
+# Reads C files and prints figures of them: "what" per 1,000 words of comments; "that",
+# and "it", "they" and "them", in the folder of 1,000 words or more that has most; structs
 # with more than 16 fields, structs whose name is defined twice, circles of includes in
 # a folder; fields of the largest struct upstairs and elsewhere, with those of the structs
 # in it; numbers upstairs, with a name and without.
@@ -6,13 +7,18 @@
 #   awk -f tests/storeys.awk FILE.[ch]...
 
 # Counts the words of a comment's line.
-function read_words(text, count, i, words)
+function read_words(text, count, i, words, word, folder)
 {
     gsub(/[^A-Za-z'_]+/, " ", text)
     count = split(text, words, " ")
     for (i = 1; i <= count; i++) {
         all_words++
-        whats += tolower(words[i]) == "what"
+        word = tolower(words[i])
+        whats += word == "what"
+        folder = folder_of(FILENAME)
+        words_of[folder]++
+        thats[folder] += word == "that"
+        its[folder] += word ~ /^(it|they|them)$/
     }
 }
 
@@ -117,6 +123,21 @@ function read_statements(code, end)
     }
 }
 
+# The most per 1,000 words of a folder's comments, and where that is above 15.
+function most_of(counts, folder, most, part, list)
+{
+    for (folder in words_of) {
+        part = 1000 * counts[folder] / words_of[folder]
+        if (words_of[folder] < 1000)
+            continue
+        if (part > most)
+            most = part
+        if (part > 15)
+            list = list " " folder sprintf("(%.1f)", part)
+    }
+    return sprintf("%.1f", most) list
+}
+
 function folder_of(path)
 {
     return match(path, /.*\//) ? substr(path, 1, RLENGTH) : ""
@@ -194,6 +215,8 @@ END {
             list[place[name]] = list[place[name]] " " name "(" total ")"
     }
     printf "what_per_1000_words %.1f\n", all_words ? 1000 * whats / all_words : 0
+    print "that_per_1000_words " most_of(thats)
+    print "it_they_them_per_1000_words " most_of(its)
     printf "large_structs %d%s\n", large, larges
     printf "structs_twice %d%s\n", split(twice, part, " "), twice
     printf "files_in_circles %d%s\n", circular, circle
