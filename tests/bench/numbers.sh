@@ -1,8 +1,7 @@
 # make numbers: half and twice of each tuned number: the rows of docs/numbers.md.
 #
 # In a copy of the sources each number is halved and doubled, and scenes are solved at
-# three epsilons. References are those of `make ablation`. About half an hour on two
-# cores.
+# three epsilons. References are those of `make ablation`. About half an hour.
 # Knobs: SCENES, EPSILONS, RAYS; OUT, the page.
 set -eu
 : "${BUILD:=build/mpi}" "${MAKE:=make}" "${OUT:=docs/numbers.md}"
@@ -30,28 +29,29 @@ file_of() {
 
 # solve FILE: "SCENE error work" of the copy, a line for each scene.
 solve() {
+    : >"$1"
     (cd "$work/copy" && $MAKE -s BUILD=build build/measure) >"$work/log" 2>&1 || return 0
     for scene in $SCENES; do
         for epsilon in $EPSILONS; do
             "$work/copy/build/measure" "$(file_of $scene)" "$references/$scene.ref" \
                 --epsilon $epsilon --final-gather $RAYS 2>/dev/null
         done | awk -F, -v scene=$scene '{ square += $10 * $10; work += $NF }
-            END { print scene, sqrt(square / NR), work / NR }'
+            END { if (NR) print scene, sqrt(square / NR), work / NR }'
     done >"$1"
 }
 
-# compared FILE: with "$work/base", where the square of the error times the work differs
-# most.
+# compared FILE: with "$work/base", where squared error times work differs most.
 compared() {
     awk 'NR == FNR { error[$1] = $2; work[$1] = $3; next }
         {
-            off = 2 * log($2 / error[$1]) + log($3 / work[$1])
-            off = off < 0 ? -off : off
-            if (off > most)
-                word = sprintf("%.2f, %.2f (%s)", $2 / error[$1], $3 / work[$1], $1)
-            most = off > most ? off : most
+            off = (2 * log($2 / error[$1]) + log($3 / work[$1])) ^ 2
+            if (off < most)
+                next
+            most = off
+            word = sprintf("%.2f, %.2f (%s)", $2 / error[$1], $3 / work[$1], $1)
         }
-        END { print most < 0.1 ? "same" : word }' "$work/base" "$1"
+        END { print word == "" ? "no result" : most < 0.01 ? "same" : word }' \
+        "$work/base" "$1"
 }
 
 # change FILE NAME [FACTOR]: the number in the copy's file, times that. Prints the number.

@@ -133,12 +133,12 @@ static void test_error_doubt(void)
     link.seen = LINK_OPEN;
     tap_ok(at_threshold(&world, &link, 1e-9) == NODE_NONE, "open and far: none");
     link.seen = LINK_ALL_SEEN / 2;
-    tap_ok(error_is(&world, &link, 2.0 * agreed, 1),
-           "half of them: as much doubt about twice the area");
+    tap_ok(error_is(&world, &link, 4.0 * agreed, 1),
+           "half of them: twice the doubt about twice the area");
     struct link swapped = link;
     swapped.p = 1;
     swapped.q = 0;
-    tap_ok(error_is(&world, &swapped, 2.0 * agreed, 1), "whichever is named first");
+    tap_ok(error_is(&world, &swapped, 4.0 * agreed, 1), "whichever is named first");
     world_free(&world);
 }
 
