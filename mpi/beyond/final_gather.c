@@ -1,7 +1,7 @@
 /* Step 9, phr's own: the final gather and its solution.
  *
  * The links have brought a solution right in the large. Here each leaf gets a row of form
- * factors by rays (rad/beyond/final_gather.c), and
+ * factors by rays (rad/beyond/gather/rays.c), and
  *
  *     B = E + rho (source + W B)
  *

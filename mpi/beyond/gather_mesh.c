@@ -14,7 +14,7 @@
  * looked at. In a scene of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
- * over a leaf B is linear, and a leaf where B bends (rad/beyond/gather_bends.c) is split.
+ * over a leaf B is linear, and a leaf where B bends (rad/beyond/gather/bends.c) is split.
  * But an undivided root has no parent: where a surface is many small roots, each link to
  * one tells too little to divide the root, and B would be constant over each. So these
  * are looked at, too.

@@ -1,5 +1,5 @@
-/* Tests of rad/beyond/lamps.h, and of aiming at lamps and bright patches: the light that
- * they bring to leaves and points, against closed forms. */
+/* Tests of senders and cuts (rad/beyond/gather/), and of aiming at lamps and bright
+ * patches: the light of these at leaves and points, against closed forms. */
 #include "geom/contour.h"
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/paths.h"
