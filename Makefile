@@ -202,7 +202,7 @@ EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rt
 
 bench: $(BUILD)/rays $(BUILD)/hits build/room
 
-$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/subject.h \
+$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/bench.h \
     rad/beyond/paths.c $(BUILD)/libphr.a Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
 	    $(CFLAGS) -o $@ \
@@ -271,8 +271,8 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
 	mv build/answers.csv scenes/answers.csv
 
-check: $(PHR) $(IMGDIFF) build/viewfactors pathtracer tests build/room $(BUILD)/direct \
-    $(COURSE)
+check: $(PHR) $(IMGDIFF) build/viewfactors pathtracer tests build/room bench \
+    $(BENCHES:%=$(BUILD)/%) $(COURSE)
 	cp scenes/room.mtl $(BUILD)/tests
 	build/room 1000 1 >$(BUILD)/tests/room.obj
 	$(BUILD)/direct scenes/shadow.obj $(BUILD)/tests/shadow.ref 10000

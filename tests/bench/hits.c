@@ -23,7 +23,7 @@
 #include "io/picture/viewpoint.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
-#include "tests/bench/subject.h"
+#include "tests/bench/bench.h"
 #include "tests/scenes.h"
 #include "tests/shaded.h"
 
@@ -39,25 +39,25 @@ struct rays {
 };
 
 /* A point of the surfaces, by area. Returns its triangle. */
-static int32_t random_place(const struct subject *subject, const double *sums,
+static int32_t random_place(const struct bench *bench, const double *sums,
                             struct random *random, struct vec3 *x)
 {
-    int32_t count = subject->scene->input_count;
+    int32_t count = bench->scene->input_count;
     double at = sums[count - 1] * random_unit(random);
     int32_t t = (int32_t)sum_place(sums, count, at);
-    *x = random_point_on(random, &subject->scene->triangles[t]);
+    *x = random_point_on(random, &bench->scene->triangles[t]);
     return t;
 }
 
-static void fill_leaving(const struct subject *subject, struct rays *rays,
+static void fill_leaving(const struct bench *bench, struct rays *rays,
                          struct random *random, int together)
 {
-    const struct plane *planes = subject->scene->planes;
+    const struct plane *planes = bench->scene->planes;
     int32_t t = 0;
     rays->are_streams = together == STREAM_RAYS;
     for (int i = 0; i < rays->count; i++) {
         if (i % together == 0) {
-            t = random_place(subject, rays->sums, random, &rays->origins[i]);
+            t = random_place(bench, rays->sums, random, &rays->origins[i]);
             rays->origins[i] = point_above(rays->origins[i], planes[t].normal);
         } else {
             rays->origins[i] = rays->origins[i - 1];
@@ -69,10 +69,10 @@ static void fill_leaving(const struct subject *subject, struct rays *rays,
 }
 
 /* Row by row through a square that is seen at a right angle. */
-static void fill_camera(const struct subject *subject, struct rays *rays,
+static void fill_camera(const struct bench *bench, struct rays *rays,
                         struct random *random, int unused)
 {
-    (void)subject, (void)random, (void)unused;
+    (void)bench, (void)random, (void)unused;
     int side = (int)sqrt((double)rays->count);
     for (int i = 0; i < rays->count; i++) {
         double x = 2.0 * (i % side) / side - 1.0, y = 2.0 * i / side / side - 1.0;
@@ -81,18 +81,18 @@ static void fill_camera(const struct subject *subject, struct rays *rays,
     }
 }
 
-static void fill_segments(const struct subject *subject, struct rays *rays,
+static void fill_segments(const struct bench *bench, struct rays *rays,
                           struct random *random, int unused)
 {
     (void)unused;
-    const struct plane *planes = subject->scene->planes;
+    const struct plane *planes = bench->scene->planes;
     rays->are_segments = true;
     for (int i = 0; i < rays->count; i++) {
         int32_t *own = rays->own[i];
         struct vec3 *from = &rays->origins[i], *to = &rays->ends[i];
         do {
-            own[0] = random_place(subject, rays->sums, random, from);
-            own[1] = random_place(subject, rays->sums, random, to);
+            own[0] = random_place(bench, rays->sums, random, from);
+            own[1] = random_place(bench, rays->sums, random, to);
         } while (plane_distance(&planes[own[0]], *to) <= 1e-3 ||
                  plane_distance(&planes[own[1]], *from) <= 1e-3);
     }
@@ -159,7 +159,7 @@ static void set_embree(const struct rays *rays, struct RTCRayHit *out)
 }
 
 /* Returns the seconds that it takes; counts the answers that differ. */
-static double run_embree(const struct subject *subject, const struct rays *rays,
+static double run_embree(const struct bench *bench, const struct rays *rays,
                          struct RTCRayHit *embree, int64_t *differ)
 {
     struct RTCIntersectContext context;
@@ -168,9 +168,9 @@ static double run_embree(const struct subject *subject, const struct rays *rays,
     rtcInitIntersectContext(&context);
     for (int i = 0; i < rays->count; i++)
         if (rays->are_segments)
-            rtcOccluded1(subject->inside, &context, &embree[i].ray);
+            rtcOccluded1(bench->inside, &context, &embree[i].ray);
         else
-            rtcIntersect1(subject->whole, &context, &embree[i]);
+            rtcIntersect1(bench->whole, &context, &embree[i]);
     double seconds = cpu_seconds() - start;
     *differ = 0;
     for (int i = 0; i < rays->count; i++) {
@@ -185,7 +185,7 @@ static double run_embree(const struct subject *subject, const struct rays *rays,
 /* --- paths --- */
 
 /* Whose Embree answers the path tracer; NULL: the octree does. */
-static const struct subject *beside;
+static const struct bench *beside;
 
 static bool first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
@@ -227,7 +227,7 @@ static bool blocks_segment(const struct octree *octree, struct vec3 from, struct
 #undef octree_blocks_segment
 
 /* Returns the seconds that it takes. */
-static double run_paths(const struct subject *subject, const double *sums, int count,
+static double run_paths(const struct bench *bench, const double *sums, int count,
                         uint64_t seed, const struct pathtracer *pathtracer, double *light)
 {
     struct random random = random_seed(seed);
@@ -237,22 +237,22 @@ static double run_paths(const struct subject *subject, const double *sums, int c
     *light = 0.0;
     for (int i = 0; i < count; i += PATHS) {
         struct vec3 unused;
-        int32_t t = random_place(subject, sums, &random, &unused);
+        int32_t t = random_place(bench, sums, &random, &unused);
         struct rgb b = pathtracer_reflected(pathtracer, t, &whole, PATHS, (uint64_t)i);
         *light += rgb_sum(b);
     }
     return cpu_seconds() - start;
 }
 
-static void bench_paths(const struct subject *subject, const double *sums, int count,
+static void bench_paths(const struct bench *bench, const double *sums, int count,
                         uint64_t seed)
 {
-    struct pathtracer pathtracer = pathtracer_make(subject->scene, subject->octree);
+    struct pathtracer pathtracer = pathtracer_make(bench->scene, bench->octree);
     double best[2] = {HUGE_VAL, HUGE_VAL}, light[2], rate[2];
     for (int turn = 0; turn < 2 * TURNS; turn++) {
         int k = turn % 2;
-        beside = k ? subject : NULL;
-        best[k] = fmin(best[k], run_paths(subject, sums, count, seed, &pathtracer,
+        beside = k ? bench : NULL;
+        best[k] = fmin(best[k], run_paths(bench, sums, count, seed, &pathtracer,
                                           &light[k]));
         rate[k] = 1e-6 * (double)pathtracer.counts->rays / best[k];
         if (turn >= 2 * TURNS - 2)
@@ -266,7 +266,7 @@ static void bench_paths(const struct subject *subject, const double *sums, int c
 
 #endif
 
-static void bench_rays(const struct subject *subject, struct rays *rays)
+static void bench_rays(const struct bench *bench, struct rays *rays)
 {
     struct octree_counts counts;
     double best = HUGE_VAL;
@@ -277,9 +277,9 @@ static void bench_rays(const struct subject *subject, struct rays *rays)
     int64_t differ = 0;
 #endif
     for (int turn = 0; turn < TURNS; turn++) {
-        best = fmin(best, run_octree(subject->octree, rays, &counts));
+        best = fmin(best, run_octree(bench->octree, rays, &counts));
 #ifdef WITH_EMBREE
-        embree_best = fmin(embree_best, run_embree(subject, rays, embree, &differ));
+        embree_best = fmin(embree_best, run_embree(bench, rays, embree, &differ));
 #endif
     }
     printf("  octree: %.3f million/s, per ray %.1f nodes and %.1f triangles\n",
@@ -293,17 +293,17 @@ static void bench_rays(const struct subject *subject, struct rays *rays)
 #endif
 }
 
-static void bench_all(const struct subject *subject, int count, uint64_t seed)
+static void bench_all(const struct bench *bench, int count, uint64_t seed)
 {
     static const struct {
         const char *name;
-        void (*fill)(const struct subject *, struct rays *, struct random *, int);
+        void (*fill)(const struct bench *, struct rays *, struct random *, int);
         int together;
     } kinds[] = {{"rays from surfaces, 1 from each point", fill_leaving, 1},
                  {"rays from surfaces, 256 from each point", fill_leaving, STREAM_RAYS},
                  {"rays of a camera", fill_camera, 0},
                  {"segments between points of surfaces", fill_segments, 0}};
-    const struct scene *scene = subject->scene;
+    const struct scene *scene = bench->scene;
     double *sums = alloc_array((size_t)scene->input_count, sizeof *sums), sum = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++)
         sums[i] = sum += scene->areas[i];
@@ -314,9 +314,9 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
         rays.ends = alloc_array((size_t)count, sizeof *rays.ends);
         rays.own = alloc_array((size_t)count, sizeof *rays.own);
         rays.answers = alloc_array((size_t)count, sizeof *rays.answers);
-        kinds[k].fill(subject, &rays, &random, kinds[k].together);
+        kinds[k].fill(bench, &rays, &random, kinds[k].together);
         printf(" %s\n", kinds[k].name);
-        bench_rays(subject, &rays);
+        bench_rays(bench, &rays);
         alloc_free(rays.origins);
         alloc_free(rays.ends);
         alloc_free(rays.own);
@@ -325,7 +325,7 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
 #ifdef WITH_EMBREE
     printf(" paths, 64 from each triangle\n");
     if (scene_emitted_power(scene) > 0.0)
-        bench_paths(subject, sums, (count + PATHS - 1) / PATHS * PATHS, seed);
+        bench_paths(bench, sums, (count + PATHS - 1) / PATHS * PATHS, seed);
 #endif
     alloc_free(sums);
 }
@@ -335,7 +335,7 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
 #ifdef WITH_EMBREE
 
 /* Returns the seconds of the first hits of all rays of a picture. */
-static double trace_picture(const struct subject *subject, const struct camera *camera)
+static double trace_picture(const struct bench *bench, const struct camera *camera)
 {
     struct RTCIntersectContext context;
     struct camera_basis basis = camera_basis_of(camera);
@@ -350,14 +350,14 @@ static double trace_picture(const struct subject *subject, const struct camera *
     for (int y = 0; y < camera->height; y++) {
         for (int i = 0; i < count; i++) {
             int k = i % (SAMPLES * SAMPLES), x = i / (SAMPLES * SAMPLES);
-            rays.origins[i] = scene_from_input(subject->scene, camera->eye);
+            rays.origins[i] = scene_from_input(bench->scene, camera->eye);
             rays.ends[i] = camera_basis_ray(&basis, x + (k % SAMPLES + 0.5) / SAMPLES,
                                             y + (k / SAMPLES + 0.5) / SAMPLES);
         }
         set_embree(&rays, embree);
         double start = cpu_seconds();
         for (int i = 0; i < count; i++)
-            rtcIntersect1(subject->whole, &context, &embree[i]);
+            rtcIntersect1(bench->whole, &context, &embree[i]);
         seconds += cpu_seconds() - start;
     }
     alloc_free(rays.origins);
@@ -368,20 +368,20 @@ static double trace_picture(const struct subject *subject, const struct camera *
 
 #endif
 
-static void bench_picture(const struct subject *subject)
+static void bench_picture(const struct bench *bench)
 {
-    struct forest *forest = forest_create(subject->scene);
+    struct forest *forest = forest_create(bench->scene);
     struct shading *shading = shading_create(forest, NULL, NULL, NULL);
-    struct renderer renderer = renderer_make(subject->octree, shading, NULL);
+    struct renderer renderer = renderer_make(bench->octree, shading, NULL);
     struct camera camera =
-        viewpoint_choose(subject->scene, subject->octree, NULL, WIDTH, HEIGHT);
+        viewpoint_choose(bench->scene, bench->octree, NULL, WIDTH, HEIGHT);
     double best = HUGE_VAL, embree_best = HUGE_VAL;
     for (int turn = 0; turn < 3; turn++) {
         double start = cpu_seconds();
         alloc_free(render_scanlines(&renderer, &camera, SAMPLES, 0, 1, NULL));
         best = fmin(best, cpu_seconds() - start);
 #ifdef WITH_EMBREE
-        embree_best = fmin(embree_best, trace_picture(subject, &camera));
+        embree_best = fmin(embree_best, trace_picture(bench, &camera));
 #endif
     }
     printf(" a picture\n  phr: %.2f s\n", best);
@@ -392,13 +392,13 @@ static void bench_picture(const struct subject *subject)
     forest_destroy(forest);
 }
 
-static void bench_scene(const struct subject *subject, int count, uint64_t seed)
+static void bench_scene(const struct bench *bench, int count, uint64_t seed)
 {
-    bench_all(subject, count, seed);
-    bench_picture(subject);
+    bench_all(bench, count, seed);
+    bench_picture(bench);
 }
 
 int main(int argc, char **argv)
 {
-    return subject_bench(argc, argv, "hits SCENE.obj [RAYS [SEED]]", 100000, bench_scene);
+    return bench_main(argc, argv, "hits SCENE.obj [RAYS [SEED]]", 100000, bench_scene);
 }

@@ -17,7 +17,7 @@
  * ends, where it would meet the triangles they lie on; differences are counted and are
  * near edges or in those cuts. */
 #include "rad/beyond/patch_exchange.h"
-#include "tests/bench/subject.h"
+#include "tests/bench/bench.h"
 
 enum { TURNS = 5, TRIES = 100000 };
 
@@ -211,7 +211,7 @@ static int any_valid(const int *valid)
 
 /* Starts with the blocker that the octree has found for the bundle before, as the octree
  * does. The rest goes through Embree's best mode here, 16-wide and coherent. */
-static double run_embree(const struct subject *subject, const struct load *load,
+static double run_embree(const struct bench *bench, const struct load *load,
                          struct embree_load *ready)
 {
     struct RTCIntersectContext context;
@@ -225,9 +225,9 @@ static double run_embree(const struct subject *subject, const struct load *load,
         int *valid = ready->valid[i];
         int32_t guess = load->start[i] >= 0 ? load->guess[load->start[i]] : -1;
         if (guess >= 0)
-            mask_blocked(subject->scene, guess, rays, valid);
+            mask_blocked(bench->scene, guess, rays, valid);
         if (any_valid(valid))
-            rtcOccluded16(valid, subject->inside, &context, rays);
+            rtcOccluded16(valid, bench->inside, &context, rays);
     }
     return cpu_seconds() - start;
 }
@@ -265,7 +265,7 @@ static void print_octree(const struct load *load, const struct figures *figures)
 }
 
 /* One order of the bundles, the programs in turn. */
-static void bench_load(const struct subject *subject, struct load *load)
+static void bench_load(const struct bench *bench, struct load *load)
 {
     struct figures figures = {0};
 #ifdef WITH_EMBREE
@@ -276,9 +276,9 @@ static void bench_load(const struct subject *subject, struct load *load)
     int64_t differ = 0;
 #endif
     for (int turn = 0; turn < TURNS; turn++) {
-        run_octree(subject->octree, load, &figures);
+        run_octree(bench->octree, load, &figures);
 #ifdef WITH_EMBREE
-        embree = fmin(embree, run_embree(subject, load, &ready));
+        embree = fmin(embree, run_embree(bench, load, &ready));
         differ = count_different(load, &ready);
 #endif
     }
@@ -293,7 +293,7 @@ static void bench_load(const struct subject *subject, struct load *load)
 #endif
 }
 
-static void bench_bundles(const struct subject *subject, int count, uint64_t seed)
+static void bench_bundles(const struct bench *bench, int count, uint64_t seed)
 {
     struct load load = {.count = count};
     load.bundles = alloc_array((size_t)count, sizeof *load.bundles);
@@ -303,9 +303,9 @@ static void bench_bundles(const struct subject *subject, int count, uint64_t see
     for (int order = 0; order < 2; order++) {
         struct random random = random_seed(seed);
         load.refinement_order = order == 1;
-        fill_load(subject->scene, &load, &random);
+        fill_load(bench->scene, &load, &random);
         printf(" %s\n", order ? "refinement order" : "random pairs");
-        bench_load(subject, &load);
+        bench_load(bench, &load);
     }
     alloc_free(load.bundles);
     alloc_free(load.blocked);
@@ -315,6 +315,6 @@ static void bench_bundles(const struct subject *subject, int count, uint64_t see
 
 int main(int argc, char **argv)
 {
-    return subject_bench(argc, argv, "rays SCENE.obj [BUNDLES [SEED]]", 100000,
+    return bench_main(argc, argv, "rays SCENE.obj [BUNDLES [SEED]]", 100000,
                          bench_bundles);
 }

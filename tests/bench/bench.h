@@ -1,7 +1,7 @@
 /* A scene under test for benches of visibility: its octree, and Embree 3 beside it where
  * that is compiled in (-DWITH_EMBREE), one thread. */
-#ifndef TESTS_BENCH_SUBJECT_H
-#define TESTS_BENCH_SUBJECT_H
+#ifndef TESTS_BENCH_BENCH_H
+#define TESTS_BENCH_BENCH_H
 
 #include <inttypes.h>
 #include <math.h>
@@ -19,7 +19,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-struct subject {
+struct bench {
     const struct scene *scene;
     struct octree *octree;
 #ifdef WITH_EMBREE
@@ -78,8 +78,8 @@ static inline RTCScene embree_create(RTCDevice device, const struct scene *scene
 
 /* Reads and prepares the scene argv[1], and runs the bench on it with a number and a
  * seed from argv[2] and argv[3]. Returns the exit status. */
-static inline int subject_bench(int argc, char **argv, const char *usage, int number,
-                                void (*bench)(const struct subject *, int, uint64_t))
+static inline int bench_main(int argc, char **argv, const char *usage, int number,
+                                void (*bench)(const struct bench *, int, uint64_t))
 {
     struct comm comm;
     struct error error = {0};
@@ -90,7 +90,7 @@ static inline int subject_bench(int argc, char **argv, const char *usage, int nu
     else
         scene = scene_read((struct reading){.path = argv[1]}, &error);
     if (scene) {
-        struct subject s = {.scene = scene};
+        struct bench s = {.scene = scene};
         struct pack pack = {0};
         double start = cpu_seconds();
         s.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
