@@ -14,8 +14,8 @@
  * leaf counted as covered but visible, as the side of a book standing out from its
  * neighbours; on a steep leaf, in the housing of a lamp. All points of a pixel on one
  * triangle are gathered together, by few segments; a second time by more where these are
- * noisy, as where lamps are seen in part, or where the mesh has another light of lamps:
- * few segments may all arrive, or all miss, and seem sure.
+ * noisy. Few segments may all arrive, or all miss, and seem sure: so by more, too, where
+ * the mesh has another light of lamps and these are seen in part from around (cuts.h).
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -34,8 +34,7 @@
 
 enum {
     SEGMENTS = 4, /* to lamps, for a pixel, at first */
-    ENOUGH = 32,  /* in an unsure pixel, at least; or half of --final-gather if less, or a
-                     quarter if more */
+    ENOUGH = 48,  /* in an unsure pixel, at least; at most --final-gather */
     COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
                      cover the leaf */
     STEEP = 2,    /* those on a steep leaf, over --final-gather */
@@ -71,7 +70,7 @@ struct pixel_roots {
 /* Light of a pixel. */
 struct pixel_light {
     struct rgb sum;   /* of the radiosities met by the camera rays, W/m^2 */
-    struct rgb apart; /* excess of its lamps' light over the mesh's */
+    struct rgb apart; /* excess of mixed lamps' light over the mesh's */
     double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
 };
 
@@ -161,7 +160,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
         double h = light.lamps.band[c] + light.rest.band[c];
         double b = m->reflectance.band[c] * h;
         pixel->sum.band[c] += count * (other.band[c] + b);
-        pixel->apart.band[c] += whole ? 0.0 : count * (b - mesh.band[c]);
+        pixel->apart.band[c] += light.mixed && !whole ? count * (b - mesh.band[c]) : 0.0;
         rho = fmax(rho, m->reflectance.band[c]);
     }
     pixel->variance += count * count * rho * rho * light.variance;
@@ -235,7 +234,9 @@ static struct pixel_light show(const struct renderer *renderer,
     return pixel;
 }
 
-/* The factor on the fewest segments by which a pixel is found again; 1: a sure pixel. */
+/* The factor on the fewest segments by which a pixel is found again; 1: a sure pixel.
+ * The variance of n segments of a sequence falls as n^-4/3: as n^-1 by chance, and as
+ * n^-3/2 on a grid that an edge cuts. */
 static int more_for(const struct renderer *renderer, const struct pixel_light *pixel,
                     int count)
 {
@@ -243,10 +244,11 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     double noise = pixel->variance / (NOISE * NOISE * square);
     double apart = rgb_sum(pixel->apart) / APART;
     int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;
-    least = most / 2 < least ? most / 2 : most / 4 > least ? most / 4 : least;
     if (!(noise > 1.0) && apart * apart <= square)
         return 1;
-    return noise < least ? least : noise < most ? (int)noise : most;
+    double more = sqrt(noise) * sqrt(sqrt(noise));
+    least = least < most ? least : most;
+    return more < least ? least : more < most ? (int)more : most;
 }
 
 /* The same by few segments, and where unsure by more, other ones. */

@@ -213,8 +213,8 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
- * Offers of near senders with a good part of the light of a segment are exact. Returns
- * the light dealt to each segment, W/m^2. */
+ * Offers of near senders with a good part of the light of a segment are exact. Tells
+ * whether some are mixed. Returns the light dealt to each segment, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
 {
@@ -235,6 +235,8 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         if (aims->offers[i].worth * segments >= FOR_EXACT * all &&
             is_near_sender(node, &own))
             aims->offers[i] = exact_offer(r, senders, node);
+        r->mixed |= aims->offers[i].worth > 0.0 && at->found != 1.0 &&
+                    (at->found > 0.0 || at->asked == 0);
         sum += aims->offers[i].worth;
         found += aims->offers[i].worth * at->found;
     }
