@@ -23,6 +23,7 @@
 #   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
 #                        breaks radiosity programs (make ablation, make stability)
 #   make numbers         docs/numbers.md: half and twice of each tuned number
+#   make docs            all of these pages and the course's
 #   make course          the programs, outputs and figures of docs/course/
 #   make exercise N=1    tests answers to the exercises of a chapter
 #   make film            build/film/, a solution growing, frame by frame; with
@@ -246,6 +247,11 @@ numbers: errors build/room
 stability: $(PHR)
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/stability.sh
 
+docs:
+	@echo "All pages take three hours and a half on two cores."
+	@for page in chart front growth scaling pages numbers course; do \
+	    echo "$$(date +%H:%M) make $$page"; $(MAKE) $$page || exit 1; done
+
 # The programs of docs/course/.
 COURSE = build/id $(patsubst docs/course/%.c,build/course/%,$(wildcard docs/course/*.c))
 
@@ -348,6 +354,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
-    pages ablation numbers stability course exercise film answers \
+    pages ablation numbers stability docs course exercise film answers \
     check-long prove cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE
