@@ -34,7 +34,7 @@
 
 enum {
     SEGMENTS = 4, /* to lamps, for a pixel, at first */
-    ENOUGH = 48,  /* in an unsure pixel, at least; at most --final-gather */
+    ENOUGH = 64,  /* in an unsure pixel, at least; at most --final-gather */
     COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
                      cover the leaf */
     STEEP = 2,    /* those on a steep leaf, over --final-gather */
