@@ -71,14 +71,6 @@ scene() {
     cat >"$scene"
 }
 
-# random_bytes: 1000 bytes, the same ones always.
-random_bytes() {
-    printf "$(awk 'BEGIN { for (s = i = 1; i <= 1000; i++) {
-        s = s * 16807 % 2147483647
-        printf "\\%03o", int(s / 65536) % 256
-    } }')"
-}
-
 vertices='v 0 0 0
 v 1 0 0
 v 1 1 0
@@ -91,25 +83,6 @@ usemtl lamp"
 
 scene=$work/absent.obj
 refuse_scene ": cannot read: " "a missing scene"
-
-scene unreadable.obj </dev/null
-chmod 000 "$scene"
-if [ -r "$scene" ]; then
-    tap 0 "an unreadable scene # SKIP this user can read everything"
-else
-    refuse_scene ": cannot read: " "an unreadable scene"
-fi
-
-scene=$work/folder.obj
-mkdir "$scene"
-refuse_scene ": cannot read: " "a folder as scene"
-
-scene empty.obj </dev/null
-refuse_scene ": no faces" "an empty scene"
-
-scene=$work/random.obj
-random_bytes >"$scene"
-refuse_scene ": not a text file" "a scene of random bytes"
 
 scene index.obj <<END
 $lamp
@@ -147,16 +120,6 @@ f 1 2 5
 END
 refuse_scene ": all faces of the scene are degenerate" "only faces without area"
 
-scene corner.ply <<END
-$(ply_head 3 1)
-0 0 0
-1 0 0
-1 1 0
-3 0 1 3
-END
-refuse_scene ":13: corner 3, but the last vertex is 2" \
-    "a corner of a PLY face out of range"
-
 # --- views and usage ---
 
 scene good.obj <<END
@@ -168,52 +131,27 @@ END
 printf 'eye 0 0 5\nat 0 0 0\nfov 200\n' >"$work/bad.view"
 refuse 2 "$work/bad.view:3: fov must" "a bad view" "$scene" --view "$work/bad.view" \
     -o "$old"
-refuse 2 "$work/absent.view: cannot read: " "a missing view" "$scene" \
-    --view "$work/absent.view" \
-    -o "$old"
 refuse 2 "unknown option --fast" "an unknown option" "$scene" -o "$old" --fast
-refuse 2 "--epsilon needs a value" "a missing value" "$scene" -o "$old" --epsilon
-refuse 2 "--samples: 'x' is not a number" "a bad value" "$scene" -o "$old" --samples x
-refuse 2 "no scene given" "no scene" -o "$old"
-refuse 2 "one scene at a time" "two scenes" "$scene" "$scene" -o "$old"
 refuse 2 "-o $work/new.gif: the name must" "an unknown format" "$scene" -o "$old" \
     -o "$work/new.gif"
 
 # --- outputs ---
 
-mkdir "$work/folder.ppm"
 refuse 1 "$work/absent/new.ppm: cannot write: " "an output in a missing folder" \
     "$scene" -o "$old" -o "$work/absent/new.ppm" -o "$work/new.ppm"
-refuse 1 "$work/folder.ppm: cannot write: " "a folder as output" "$scene" -o "$old" \
-    -o "$work/folder.ppm" -o "$work/new.ppm"
 refuse 1 "$work/absent/new.json: cannot write: " "a report in a missing folder" \
     "$scene" -o "$old" -o "$work/new.ppm" --stats "$work/absent/new.json"
 
-# Over files that are read, and over each other, however they are spelt.
-printf 'eye 0 0 5\nat 0 0 0\n' >"$work/good.view"
-ln -s good.view "$work/link.view"
+# Over files that are read (every spelling: tests/io/files.c).
 cp "$scene" "$work/kept.obj"
 cp "$work/lamp.mtl" "$work/kept.mtl"
 over="which is read: no output goes over it"
 refuse 2 "$work/./good.obj is $scene, $over" "a report over the scene" \
     "$scene" -o "$old" --stats "$work/./good.obj"
-refuse 2 "$work/../$(basename "$work")/lamp.mtl is $work/lamp.mtl, $over" \
-    "a report over the library" \
-    "$scene" -o "$old" --stats "$work/../$(basename "$work")/lamp.mtl"
-refuse 2 "$work/link.view is $work/good.view, $over" "a checkpoint over the view" \
-    "$scene" --view "$work/good.view" -o "$old" --checkpoint "$work/link.view"
-refuse 2 "$old and $work/./old.ppm are the same file" "an output over another" \
-    "$scene" -o "$old" -o "$work/./old.ppm"
+refuse 2 "$work/./lamp.mtl is $work/lamp.mtl, $over" "a report over the library" \
+    "$scene" -o "$old" --stats "$work/./lamp.mtl"
 check "the scene and its library are untouched" \
     cmp "$scene" "$work/kept.obj" && cmp "$work/lamp.mtl" "$work/kept.mtl"
-
-if [ -c /dev/full ]; then
-    ln -s /dev/full "$work/full.ppm"
-    refuse 1 "$work/full.ppm: cannot write: " "a full disk" "$scene" --quiet \
-        -o "$work/full.ppm"
-else
-    tap 0 "a full disk # SKIP there is no /dev/full"
-fi
 
 # --- no errors ---
 
@@ -226,18 +164,11 @@ version_is_right() {
         starts_with "$out" "phr "
 }
 
-is_silent() {
-    [ "$status" -eq 0 ] && [ ! -s "$err" ] && [ ! -s "$out" ] && [ -s "$work/quiet.ppm" ]
-}
-
 for ranks in 1 4; do
     phr_on $ranks 10 --help
     check "--help, on $ranks" help_is_right
     phr_on $ranks 10 --version
     check "--version, on $ranks" version_is_right
-    phr_on $ranks 60 --quiet "$scene" -o "$work/quiet.ppm" --size 20x20
-    check "--quiet, on $ranks" is_silent
-    rm -f "$work/quiet.ppm"
 done
 
 tap_done
