@@ -1,5 +1,6 @@
 # The words: --help fits a screen and agrees with the man page, which renders without a
-# warning; --version; and progress, on a terminal, in a log and with --quiet.
+# warning, as do those of other programs; --version; and progress, on a terminal, in a log
+# and with --quiet.
 
 . tests/tap.sh
 
@@ -42,6 +43,18 @@ if command -v groff >/dev/null; then
 else
     tap 0 "the man page renders # SKIP there is no groff"
 fi
+
+# The other programs (their --version: tests/50-house.sh).
+for program in tools/imgdiff tools/viewfactors/viewfactors; do
+    name=$(basename $program)
+    "$BUILD/$name" --help >"$work/$name"
+    check "$name --help fits a screen" [ "$(wc -l <"$work/$name")" -le 24 ]
+    sed 's/\\-/-/g' "$program.1" >"$work/$name.1"
+    missing=$(grep -oE '(^|[^a-zA-Z-])--[a-z-]+' "$work/$name" | grep -oE '\-\-[a-z-]+' |
+        while read -r option; do
+            grep -q -e "$option" "$work/$name.1" || echo "$option"; done)
+    check "its man page has every option: $missing" [ -z "$missing" ]
+done
 
 version=$(./phr --version)
 case $version in

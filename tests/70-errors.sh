@@ -131,6 +131,8 @@ END
 printf 'eye 0 0 5\nat 0 0 0\nfov 200\n' >"$work/bad.view"
 refuse 2 "$work/bad.view:3: fov must" "a bad view" "$scene" --view "$work/bad.view" \
     -o "$old"
+refuse 2 "$work/absent.view: cannot read: " "a missing view" "$scene" \
+    --view "$work/absent.view" -o "$old"
 refuse 2 "unknown option --fast" "an unknown option" "$scene" -o "$old" --fast
 refuse 2 "-o $work/new.gif: the name must" "an unknown format" "$scene" -o "$old" \
     -o "$work/new.gif"

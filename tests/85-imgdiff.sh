@@ -193,18 +193,4 @@ area() {
 check "a mesh is a scene for viewfactors, of the same area" \
     holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
 
-# --- no errors ---
-
-diff_of --help
-check "--help" [ "$status" -eq 0 ]
-check "fits a screen" [ "$(wc -l <"$out")" -le 24 ]
-missing=
-for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+' |
-    sort -u); do
-    sed 's/\\-/-/g' tools/imgdiff.1 | grep -q -- "$option" || missing="$missing $option"
-done
-check "the man page has every option:$missing" [ -z "$missing" ]
-diff_of --version
-check "--version" says "imgdiff $(./phr --version | sed 's|phr \([0-9.]*\) .*|\1|')"
-
 tap_done

@@ -43,9 +43,6 @@ static void test_keywords(void)
            "defaults");
     tap_ok(read_view("eye 0 9 0\nat 0 1 0\n", &camera) && is_point(camera.up, 0, 0, 1),
            "looking along the default up, up is z");
-    tap_ok(read_view(PLACE "size 1 32768\nfov 179.9\n", &camera) && camera.width == 1 &&
-               camera.height == 32768,
-           "extreme sizes and angles");
     tap_ok(read_view("eye 0 0 1e100\nat 0 0 0\nup 1e100 1e100 0\n", &camera) &&
                fabs(vec3_length(camera_ray(&camera, 256.0, 256.0)) - 1.0) < 1e-15 &&
                vec3_length(camera_ray(&camera, 0.0, 0.0)) < 2.0,
@@ -60,25 +57,19 @@ static void check_refused(const char *text, const char *message)
 
 static void test_bad_lines(void)
 {
-    check_refused("eye 1 2\n", VIEW ":1: 3 numbers are needed");
     check_refused(PLACE "up\n", VIEW ":3: 3 numbers are needed");
     check_refused(PLACE "fov\n", VIEW ":3: 1 number is needed");
     check_refused(PLACE "\nsize 5\n", VIEW ":4: 2 numbers are needed");
     check_refused(PLACE "at 1 2 3 4\n", VIEW ":3: unexpected '4'");
-    check_refused(PLACE "fov 45 degrees\n", VIEW ":3: unexpected 'degrees'");
-    check_refused(PLACE "size 5 5 5\n", VIEW ":3: unexpected '5'");
-    check_refused("eye 0 nan 0\n", VIEW ":1: bad number 'nan'");
     check_refused("eye 0 0 5\r\nat 0 0 0x1\r\n", VIEW ":2: bad number '0x1'");
     check_refused("eye 0 0 \\\n1e101\n", VIEW ":1: number '1e101' is out of range");
     check_refused("# c\n\nEye 0 0 0\n", VIEW ":3: unknown keyword 'Eye'");
-    check_refused(PLACE "zoom 3\nfov 0\n", VIEW ":3: unknown keyword 'zoom'");
 }
 
 static void test_bad_values(void)
 {
-    static const char *const fovs[] = {"0", "-1", "180", "1e9"};
-    static const char *const sizes[] = {"0 5", "5 0", "-5 5", "5.5 5", "5 32769",
-                                        "1e9 1"};
+    static const char *const fovs[] = {"0", "-1", "180"};
+    static const char *const sizes[] = {"0 5", "5 0", "5.5 5", "5 32769"};
     char text[100];
     for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++) {
         snprintf(text, sizeof text, PLACE "fov %s\n", fovs[i]);
@@ -95,23 +86,9 @@ static void test_bad_views(void)
 {
     check_refused("", VIEW ": no 'eye' line");
     check_refused("eye 1 2 3\n", VIEW ": no 'at' line");
-    check_refused("at 1 2 3\nfov 45\n", VIEW ": no 'eye' line");
     check_refused("eye 1 2 3\nat 1 2 3\n", VIEW ": eye and at are the same point");
     check_refused(PLACE "up 0 0 -3\n", VIEW ": up points along the viewing direction");
-    check_refused("up 0 1 0\neye 0 9 0\nat 0 1 0\n",
-                  VIEW ": up points along the viewing direction");
     check_refused(PLACE "up 0 0 0\n", VIEW ": up points along the viewing direction");
-    check_refused(PLACE "\001\n", VIEW ": not a text file");
-}
-
-static void test_missing_view(void)
-{
-    struct camera camera;
-    forget_error();
-    tap_ok(!camera_read("build/camera_test_absent", &camera, &error) &&
-               error_is_of_system(EXIT_USAGE, "build/camera_test_absent",
-                                  ": cannot read: "),
-           "%s", error.text);
 }
 
 /* --- rays --- */
@@ -152,15 +129,12 @@ static void check_angles(struct camera *camera, double fov, int width, int heigh
 
 static void test_angles(void)
 {
-    static const double fovs[] = {0.001, 1.0, 20.0, 39.3076, 45.0, 60.0, 90.0, 120.0,
-                                  150.0, 179.0};
+    static const double fovs[] = {0.001, 1.0, 45.0, 90.0, 150.0, 179.0};
     struct camera camera;
     read_view(PLACE, &camera);
     for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++)
         check_angles(&camera, fovs[i], 512, 512);
     check_angles(&camera, 40.0, 800, 400);
-    check_angles(&camera, 40.0, 400, 800);
-    check_angles(&camera, 40.0, 1, 1);
     check_angles(&camera, 40.0, 32768, 3);
 }
 
@@ -248,13 +222,8 @@ static void check_box(const char *name, struct vec3 low, struct vec3 high)
 static void test_boxes(void)
 {
     struct vec3 zero = {0.0, 0.0, 0.0};
-    check_box("a cube", zero, point(1, 1, 1));
-    check_box("the Cornell box", zero, point(556, 548.8, 559.2));
     check_box("a plate", zero, point(8, 0, 5));
     check_box("a wall", zero, point(0, 3, 5));
-    check_box("a corridor along x", zero, point(100, 3, 2));
-    check_box("a tower", zero, point(2, 100, 3));
-    check_box("a corridor towards the eye", zero, point(3, 2, 100));
     check_box("far from the origin", point(1e6, -3e6, 5e5),
               point(1e6 + 1.0, -3e6 + 2.0, 5e5 + 3.0));
     check_box("small", zero, point(1e-9, 2e-9, 1e-9));
@@ -284,7 +253,6 @@ int main(void)
     test_bad_lines();
     test_bad_values();
     test_bad_views();
-    test_missing_view();
     test_angles();
     test_directions();
     test_boxes();

@@ -51,11 +51,10 @@ static void test_defaults(void)
     tap_ok(parse("room.obj") && error.code == EXIT_DONE &&
                is_same(options.scene, "room.obj") && options.output_count == 0 &&
                options.view_count == 0 && !options.stats && options.width == 0 &&
-               options.height == 0 && options.exposure == 0.0,
-           "a scene alone");
-    tap_ok(!options.flat && !options.two_sided && !options.two_sided_lamps &&
-               !options.quiet && !options.verbose && !options.help && !options.version,
-           "all switches are off");
+               options.height == 0 && options.exposure == 0.0 && !options.flat &&
+               !options.two_sided && !options.two_sided_lamps && !options.quiet &&
+               !options.verbose && !options.help && !options.version,
+           "a scene alone: all switches are off");
 }
 
 static void test_texts(void)
@@ -88,12 +87,9 @@ static void test_outputs(void)
         {"d.ppm/a.ply", "d.ppm/a.ply", FORMAT_PLY, true},
         {"ppm:a", "a", FORMAT_PPM, true},
         {"PLY:a.ppm", "a.ppm", FORMAT_PLY, true},
-        {"pfm:-", "-", FORMAT_PFM, true},
         {"pfm:ppm:a", "ppm:a", FORMAT_PFM, true},
         {"./ppm:a.ply", "./ppm:a.ply", FORMAT_PLY, true},
         {"ppm1:a.ply", "ppm1:a.ply", FORMAT_PLY, true},
-        {"-", "-", FORMAT_PPM, false},
-        {"/dev/stdout", "/dev/stdout", FORMAT_PPM, false},
         {"a.ppm.gz", "a.ppm.gz", FORMAT_PPM, false},
         {".pfm", ".pfm", FORMAT_PPM, false},
         {"a.ply/", "a.ply/", FORMAT_PPM, false},
@@ -145,19 +141,19 @@ static void test_switches(void)
     tap_ok(!parse("--sky 1,2 a.obj") && !parse("--sky 1,2,3,4 a.obj") &&
                !parse("--sky 1,,2 a.obj") && !parse("--sky -1 a.obj"),
            "of nothing else");
-    tap_ok(parse("--quiet a.obj") && options.quiet && !options.verbose, "--quiet");
-    tap_ok(parse("--verbose a.obj") && options.verbose && !options.quiet, "--verbose");
-    tap_ok(parse("--help") && options.help && !options.version && !options.scene,
-           "--help needs no scene");
-    tap_ok(parse("-h") && options.help && !options.help_on, "nor does -h");
+    tap_ok(parse("--quiet a.obj") && options.quiet && !options.verbose &&
+               parse("--verbose a.obj") && options.verbose && !options.quiet,
+           "--quiet and --verbose");
+    tap_ok(parse("--help") && options.help && !options.version && !options.scene &&
+               parse("-h") && options.help && !options.help_on &&
+               parse("--version") && options.version && !options.help,
+           "--help, -h and --version need no scene");
     tap_ok(parse("--help=epsilon") && strcmp(options.help_on, "--epsilon") == 0 &&
                parse("--help=-o") && strcmp(options.help_on, "-o") == 0,
            "--help=OPTION, with dashes or without");
     tap_ok(parse("--samples=5 --size=7x8 -- -a.obj") && options.samples == 5 &&
                options.width == 7 && strcmp(options.scene, "-a.obj") == 0,
            "values behind '=', and a scene behind --");
-    tap_ok(parse("--version") && options.version && !options.help,
-           "--version needs no scene");
     tap_ok(parse("--accuracy 2.5% a.obj") && options.criterion.accuracy == 0.025 &&
                options.criterion.epsilon == 1e-3 && options.criterion.final_gather == 64,
            "--accuracy in percent, from a coarse epsilon and few rays");
@@ -166,9 +162,8 @@ static void test_switches(void)
                options.criterion.final_gather == 32,
            "--accuracy from a given epsilon and number of rays");
     tap_ok(!parse("--accuracy % a.obj") && !parse("--accuracy 0.001% a.obj") &&
-               !parse("--accuracy 101% a.obj") && !parse("--accuracy 1%% a.obj") &&
-               !parse("--accuracy 0% a.obj"),
-           "not %% alone, not too little or too much, not twice");
+               !parse("--accuracy 1%% a.obj"),
+           "not %% alone, not too little, not twice");
 }
 
 /* --- choices --- */
@@ -222,9 +217,9 @@ static void test_choices(void)
         }
         /* The start of a name is none. */
         snprintf(line, sizeof line, "%.2s", choice->values[1]);
-        const char *const wrong[] = {"of-delphi", "", "|", strchr(choice->kind, ' ') + 4,
+        const char *const wrong[] = {"of-delphi", "", strchr(choice->kind, ' ') + 4,
                                      strlen(choice->values[1]) == 2 ? "x" : line};
-        for (int k = 0; k < 5; k++)
+        for (int k = 0; k < 4; k++)
             tap_ok(refuses(choice->name, wrong[k], choice->kind), "%s refuses '%s'",
                    choice->name, wrong[k]);
     }
@@ -264,10 +259,16 @@ static void test_paper(void)
 
 static void test_sizes(void)
 {
-    tap_ok(parse("--size 640x480 a.obj") && options.width == 640 && options.height == 480,
-           "--size 640x480");
-    tap_ok(parse("--size 1X32768 a.obj") && options.width == 1 && options.height == 32768,
-           "--size 1X32768");
+    static const char *const WRONG[] = {"5", "5x", "x5", "5x5x", "0x5", "5x0", "5.5x5",
+                                        "32769x1", "1x32769", "5*5",
+                                        "99999999999999999999x5", "4294967297x5"};
+    tap_ok(parse("--size 640x480 a.obj") && options.width == 640 &&
+               options.height == 480 && parse("--size 1X32768 a.obj") &&
+               options.width == 1 && options.height == 32768,
+           "--size 640x480 and 1X32768");
+    for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++)
+        tap_ok(refuses("--size", WRONG[i], "WIDTHxHEIGHT, each from 1 to 32768"),
+               "--size refuses %s", WRONG[i]);
 }
 
 /* Options with a number: its field, its range, and whether the help says its default. */
@@ -323,7 +324,7 @@ static bool refuses_range(const char *name, const char *value)
 
 static void test_numbers(void)
 {
-    static const char *const WORDS[] = {"", "x", "1x", "nan", "inf", "0x1"};
+    static const char *const WORDS[] = {"", "1x", "nan"};
     for (int i = 0; i < NUMBER_COUNT; i++) {
         const struct number *number = &NUMBERS[i];
         tap_ok(takes(number, number->low) && takes(number, number->high),
@@ -350,17 +351,13 @@ static void check_refused(const char *line, const char *message)
 static void test_errors(void)
 {
     check_refused("", "no scene given; see --help");
-    check_refused("--quiet -o a.ppm", "no scene given; see --help");
     check_refused("a.obj b.obj", "one scene at a time: a.obj and b.obj");
-    check_refused("a.obj --fast", "unknown option --fast; see --help");
     check_refused("a.obj --flat=1", "--flat takes no value");
-    check_refused("a.obj --flot=1", "unknown option --flot=1; see --help");
     check_refused("a.obj -o=1", "unknown option -o=1; see --help");
     check_refused("a.obj --samples=x", "--samples: 'x' is not a number");
     check_refused("--help=eps", "--help: there is no option eps");
     check_refused("a.obj --Flat", "unknown option --Flat; see --help");
     check_refused("a.obj -- --flat", "one scene at a time: a.obj and --flat");
-    check_refused("a.obj -f", "unknown option -f; see --help");
     check_refused("a.obj -o ppm:",
                   "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
                   "or be FORMAT:FILE, as in ppm:FILE");
@@ -385,11 +382,10 @@ static void test_memory(void)
     static const struct {
         const char *text;
         int64_t bytes;
-    } CASES[] = {{"1", 1}, {"1000", 1000}, {"3K", 3072}, {"512M", INT64_C(1) << 29},
+    } CASES[] = {{"1", 1}, {"3K", 3072}, {"512M", INT64_C(1) << 29},
                  {"2G", INT64_C(1) << 31}, {"3T", INT64_C(3) << 40}};
-    static const char *const BEYOND[] = {"0", "-1G", "9999999T", "9999999999T",
-                                         "99999999999999999999"};
-    static const char *const WORDS[] = {"G", "1.5G", "1g", "1GB", "1e9", "", "x"};
+    static const char *const BEYOND[] = {"0", "-1G", "9999999T", "99999999999999999999"};
+    static const char *const WORDS[] = {"G", "1.5G", "1g", "1GB", ""};
     char line[100];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         snprintf(line, sizeof line, "a.obj --memory %s", CASES[i].text);
@@ -409,27 +405,20 @@ static void test_restart(void)
                is_same(options.resume, "c") && is_same(options.checkpoint, "c") &&
                options.every == 3,
            "a checkpoint may be renewed");
-    tap_ok(parse("a.obj --paper --save-links l") && is_same(options.save_links, "l"),
-           "--save-links");
-    tap_ok(parse("a.obj --load-links l --linking pairs") &&
+    tap_ok(parse("a.obj --paper --save-links l") && is_same(options.save_links, "l") &&
+               parse("a.obj --load-links l --linking pairs") &&
                is_same(options.load_links, "l"),
-           "--load-links");
+           "--save-links and --load-links");
     check_refused("a.obj --save-links l",
                   "--save-links goes with --linking pairs (--paper)");
     check_refused("a.obj --paper --final-gather 64",
                   "--final-gather goes with --linking tree");
     check_refused("a.obj --paper --final-gather pixels",
                   "--final-gather pixels needs rays, and a tree");
-    check_refused("a.obj --final-gather 0,pixels",
-                  "--final-gather pixels needs rays, and a tree");
     check_refused("a.obj --flat --final-gather pixels",
                   "--flat and --final-gather pixels do not go together");
     check_refused("a.obj --final-gather 64pixels",
                   "--final-gather: '64pixels' is not N, pixels or N,pixels");
-    check_refused("a.obj --final-gather pixel",
-                  "--final-gather: 'pixel' is not N, pixels or N,pixels");
-    check_refused("a.obj --final-gather 64,256",
-                  "--final-gather: '64,256' is not N, pixels or N,pixels");
     check_refused("a.obj --final-gather 6x,pixels",
                   "--final-gather: '6x' is not a number");
     tap_ok(parse("a.obj --final-gather pixels") && options.pixels &&
@@ -451,21 +440,14 @@ static void test_restart(void)
                !options.pixels && options.criterion.final_gather == 64,
            "the last final gather counts, for rays and for pixels");
     check_refused("a.obj --paper --accuracy 1%", "--accuracy goes with --linking tree");
-    check_refused("a.obj --accuracy 1% --linking pairs",
-                  "--accuracy goes with --linking tree");
     check_refused("a.obj --final-gather 0 --accuracy 1%",
                   "--accuracy and --final-gather 0 do not go together");
-    check_refused("a.obj --paper --linking tree --load-links l",
-                  "--load-links goes with --linking pairs (--paper)");
     check_refused("a.obj --every 2", "--every needs --checkpoint");
     check_refused("a.obj --save-links l --load-links m",
                   "--save-links and --load-links do not go together");
     check_refused(
         "a.obj --resume c --load-links l",
         "--resume and --load-links do not go together: the initial links are long gone");
-    check_refused(
-        "a.obj --resume c --save-links c",
-        "--resume and --save-links do not go together: the initial links are long gone");
 }
 
 static void test_settings(void)
@@ -499,16 +481,6 @@ static void test_settings(void)
                strstr(options_run_settings(&options), "--ke radiance\n"),
            "and what Ke is");
     check_refused("a.obj --ke watts", "--ke: 'watts' is not one of radiosity|radiance");
-}
-
-static void test_bad_sizes(void)
-{
-    static const char *const sizes[] = {
-        "5", "5x", "x5", "5x5x", "5x5x5", "0x5", "5x0", "-5x5", "5.5x5", "32769x1",
-        "1x32769", "axb", "5*5", "nanx5", "99999999999999999999x5", "4294967297x5"};
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
-        tap_ok(refuses("--size", sizes[i], "WIDTHxHEIGHT, each from 1 to 32768"),
-               "--size refuses %s", sizes[i]);
 }
 
 /* --- the help --- */
@@ -575,7 +547,6 @@ int main(void)
     test_sizes();
     test_numbers();
     test_errors();
-    test_bad_sizes();
     test_missing_values();
     test_memory();
     test_restart();

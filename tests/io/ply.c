@@ -69,12 +69,9 @@ static void check_square(const char *name, const char *text)
 
 static void test_text(void)
 {
-    check_square("text", ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
-    check_square("two triangles",
-                 ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3");
-    check_square("vertex_index, other names of types",
-                 ASCII SQUARE "element face 1\nproperty list uint8 int32 vertex_index\n"
-                 "end_header\n" CORNERS "4 0 1 2 3\n");
+    check_square("two triangles, vertex_index, other names of types, no last line end",
+                 ASCII SQUARE "element face 2\nproperty list uint8 int32 vertex_index\n"
+                 "end_header\n" CORNERS "3 0 1 2\n3 0 2 3");
     check_square("faces before vertices",
                  ASCII FACE(1) SQUARE "end_header\n4 0 1 2 3\n" CORNERS);
     check_square("comments, blank lines, CR LF",
@@ -243,11 +240,6 @@ static void test_colours(void)
         read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
     check_material(scene, 0, &GREY, "no colours: grey");
     scene_destroy(scene);
-    scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(2)
-                      "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
-                      "0 1 0 0 0 0\n3 0 1 2\n3 2 3 0\n");
-    check_material(scene, 0, &MEAN, "colours of vertices: the mean of the corners");
-    scene_destroy(scene);
     scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(3) COLOURS("double")
                       "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2 0.1 0.2 0.3\n"
@@ -326,8 +318,6 @@ static void test_strips(void)
     check_refused(text, ":19: corner 6, but the last vertex is 5");
     snprintf(text, sizeof text, "%s3 0 1 -2\n", head);
     check_refused(text, ":19: a corner is not the number of a vertex");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 -1\n",
-                  ":14: a corner is not the number of a vertex");
     check_refused(ASCII SQUARE "element tristrips 0\nproperty list int int vertex_index\n"
                   "end_header\n" CORNERS, ": no faces with vertex_indices");
 }
@@ -365,14 +355,12 @@ static void test_header_errors(void)
 {
     check_refused("plyx\n", ": not a PLY file");
     check_refused("ply\n", ":1: the header has no end");
-    check_refused("ply\nelement vertex 1\n", ":2: the header has no end");
     check_refused("ply\nend_header\n", ":2: no format before 'end_header'");
     check_refused("ply\nformat ebcdic 1.0\n", ":2: unknown format 'ebcdic'");
     check_refused("ply\nformat ascii 2.0\n", ":2: unknown version of the format '2.0'");
     check_refused(ASCII "format ascii 1.0\n", ":3: a second format 'ascii'");
     check_refused(ASCII "hello\n", ":3: unknown line of the header: 'hello'");
     check_refused(ASCII "element vertex -1\n", ":3: bad number of elements '-1'");
-    check_refused(ASCII "element vertex 3x\n", ":3: bad number of elements '3x'");
     check_refused(ASCII "element vertex\n", ":3: bad number of elements ''");
     check_refused(ASCII "property float x\n",
                   ":3: a property before any element: 'float x'");
@@ -386,13 +374,8 @@ static void test_header_errors(void)
                   ":4: the wrong kind of property for 'vertex_index'");
     check_refused(ASCII FACE(1) "end_header\n3 0 1 2\n", ": no vertices with x, y and z");
     check_refused(ASCII SQUARE "end_header\n" CORNERS, ": no faces with vertex_indices");
-    check_refused(ASCII SQUARE FACE(0) "end_header\n" CORNERS,
-                  ": no faces with vertex_indices");
     check_refused(ASCII "element vertex 1000000000000\n" XYZ FACE(1) "end_header\n",
                   ":3: the file is too short for 1000000000000 elements of this kind");
-    check_refused("ply\nformat binary_little_endian 1.0\n" SQUARE FACE(1)
-                  "end_header\nshort",
-                  ":3: the file is too short for 4 elements of this kind");
 }
 
 /* Values behind the last of a line change nothing, and are counted. */
@@ -418,33 +401,30 @@ static void test_long_lines(void)
 
 static void test_row_errors(void)
 {
-    check_refused(ASCII SQUARE FACE(1)
-                  "end_header\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n",
-                  ":11: bad number 'nan'");
-    check_refused(ASCII SQUARE FACE(1)
-                  "end_header\n0 0 0\n1 0 inf\n1 1 0\n0 1 0\n3 0 1 2\n",
-                  ":11: bad number 'inf'");
-    check_refused(ASCII SQUARE FACE(1)
-                  "end_header\n0 0 0\n1 0 1e200\n1 1 0\n0 1 0\n3 0 1 2\n",
-                  ":11: a number is not finite or out of range");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n",
-                  ":11: fewer values than the header says");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 4\n",
-                  ":14: corner 4, but the last vertex is 3");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 -1\n",
-                  ":14: a corner is not the number of a vertex");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 1.5\n",
-                  ":14: a corner is not the number of a vertex");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "-3 0 1 2\n",
-                  ":14: the length of a list is not a natural number");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "2 0 1\n",
-                  ":14: 2 corners instead of 3 to 16384");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4000000000 0 1\n",
-                  ":14: fewer values than the header says");
-    check_refused(ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n \n",
-                  ": the file ends in face 1");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3\n",
-                  ": 8 bytes are left behind the last element");
+    static const char *const VERTICES[][2] = {
+        {"1 0 nan", ":11: bad number 'nan'"},
+        {"1 0 1e200", ":11: a number is not finite or out of range"},
+        {"1 0", ":11: fewer values than the header says"}};
+    static const char *const FACES[][2] = {
+        {"3 0 1 4", ":14: corner 4, but the last vertex is 3"},
+        {"3 0 1 -1", ":14: a corner is not the number of a vertex"},
+        {"3 0 1 1.5", ":14: a corner is not the number of a vertex"},
+        {"-3 0 1 2", ":14: the length of a list is not a natural number"},
+        {"2 0 1", ":14: 2 corners instead of 3 to 16384"},
+        {"4000000000 0 1", ":14: fewer values than the header says"},
+        {" ", ": the file ends in face 0"},
+        {"3 0 1 2\n3 0 2 3", ": 8 bytes are left behind the last element"}};
+    char text[400];
+    for (size_t i = 0; i < sizeof VERTICES / sizeof VERTICES[0]; i++) {
+        snprintf(text, sizeof text, ASCII SQUARE FACE(1)
+                 "end_header\n0 0 0\n%s\n1 1 0\n0 1 0\n3 0 1 2\n", VERTICES[i][0]);
+        check_refused(text, VERTICES[i][1]);
+    }
+    for (size_t i = 0; i < sizeof FACES / sizeof FACES[0]; i++) {
+        snprintf(text, sizeof text, ASCII SQUARE FACE(1) "end_header\n" CORNERS "%s\n",
+                 FACES[i][0]);
+        check_refused(text, FACES[i][1]);
+    }
     check_refused(ASCII SQUARE FACE(1)
                   COLOURS("float") "end_header\n" CORNERS "3 0 1 2 0 -0.1 0\n",
                   ":17: a negative colour or emission");
@@ -464,16 +444,12 @@ static struct scene *read_source(const char *path, bool *is_ply)
 static void test_choice(void)
 {
     static const char text[] = ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n";
-    write_text(PLY, text);
     bool is_ply;
-    struct scene *scene = read_source(PLY, &is_ply);
-    tap_ok(is_ply && is_square(scene), "from a file%s", error.text);
-    scene_destroy(scene);
     write_text("build/ply_test.mesh", text);
-    scene = read_source("build/ply_test.mesh", &is_ply);
+    struct scene *scene = read_source("build/ply_test.mesh", &is_ply);
     tap_ok(is_ply && is_square(scene), "another name, the content of PLY: read whole");
     scene_destroy(scene);
-    static const char *const OTHERS[] = {"v 0 0 0\n", "ply", "plyx", "", "PLY\n"};
+    static const char *const OTHERS[] = {"v 0 0 0\n", "ply", "plyx", ""};
     for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++) {
         write_text("build/ply_test.mesh", OTHERS[i]);
         read_source("build/ply_test.mesh", &is_ply);
@@ -485,7 +461,6 @@ static void test_choice(void)
     tap_ok(!read_source("build/ply_test_absent.ply", &is_ply) && !is_ply &&
                error.code == EXIT_USAGE,
            "a missing file: %s", error.text);
-    remove(PLY);
     remove("build/ply_test.mesh");
 }
 
