@@ -111,38 +111,19 @@ power() {
     stat_of "$work/$1/s.json" emitted_power
 }
 
-# faces FILE: "FIRST COUNT SIZE" of the faces of a mesh: the place of the first byte, and
-# bytes of a face.
-faces() {
-    LC_ALL=C sed '/^end_header/q' "$1" | awk '
-        BEGIN { size["uchar"] = 1; size["int"] = size["uint"] = size["float"] = 4 }
-        { first += length($0) + 1 }
-        $1 == "element" { element = $2; count[element] = $3 }
-        $2 == "list" { bytes[element] += 1 + 3 * 4 }
-        $1 == "property" { bytes[element] += size[$2] }
-        END { print first + count["vertex"] * bytes["vertex"] + 1, count["face"],
-                  bytes["face"] }'
-}
-
-# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ".
+# roots OPTIONS...: those of the patches, twins too.
 roots() {
-    faces "$work/$1/a.ply" >"$work/faces"
-    read -r first count size <"$work/faces"
-    tail -c +"$first" "$work/$1/a.ply" | head -c $((count * size)) |
-        od -An -v -w"$size" -t u1 | awk '
-        { root = $26 + 256 * $27 }
-        NR == 1 { first = root }
-        NR > 1 && root > last + 1 { printf "%d-%d ", first, last; first = root }
-        { last = root }
-        END { printf "%d-%d ", first, last }'
+    "$work/serial/phr" $cornell --quiet --max-level 0 --dump patches "$@" |
+        sed -n 's,/.*,,p'
 }
 
 # The Cornell box has 38 triangles, of which 2 and 3 are the lamp.
 check "--two-sided leaves the power as it is" [ "$(power flat-3)" = "$(power serial)" ]
-check "and the lamp without a twin" [ "$(roots flat-3)" = "0-39 42-75 " ]
+check "and the lamp without a twin" [ "$(roots --two-sided)" = "$(seq 0 39; seq 42 75)" ]
 check "--two-sided-lamps doubles the power" \
     holds "($(power lamps-3) / $(power serial) - 2)^2 < 1e-24"
-check "and gives the lamp one" [ "$(roots lamps-3)" = "0-75 " ]
+check "and gives the lamp one" \
+    [ "$(roots --two-sided-lamps)" = "$(seq 0 75)" ]
 
 # from_above OPTIONS...: the sum of a picture of nothing but the lamp's back.
 from_above() {

@@ -23,7 +23,7 @@ sweep() {
     for epsilon in 4e-3 1e-3 2.5e-4 6.25e-5 1.5625e-5 3.90625e-6 9.765625e-7; do
         [ "$way" = gather ] || rays=0
         now=$("$BUILD/measure" "$scene" "$folder/$name.ref" "$@" --epsilon $epsilon \
-            --final-gather $rays | awk -F, '{ print $10, $11, $21, $22, $16 }')
+            --final-gather $rays | awk -F, '{ print $10, $11, $20, $21, $16 }')
         if [ -z "$now" ]; then
             tap 1 "$name, $way, $epsilon: no measurement"
         elif [ -n "$before" ]; then

@@ -133,8 +133,8 @@ measured() {
             $(of "$1") $(options_of "$2" "$3") 2>>"$folder/log"
         [ $? -ne 124 ] || : >"$folder/ended.$2"
     } | awk -F, -v OFS=, -v scene="$(name_of "$1")" -v variant="$2" -v setting="$3" '
-            $2 ~ / paths a leaf$/ { variant = "paths"; $4 = ""; samples = ($2 + 0) * $26 }
-            { print scene, variant, setting, $3, $4, $26, samples, $5,
+            $2 ~ / paths a leaf$/ { variant = "paths"; $4 = ""; samples = ($2 + 0) * $25 }
+            { print scene, variant, setting, $3, $4, $25, samples, $5,
                     $10, $11, $12, $13, $14, $15, $16, $17 }'
 }
 

@@ -5,20 +5,20 @@
  *
  * First hits of rays of random directions that leave points of the surfaces, chosen by
  * area: each ray a point of its own, as paths do that wander, or 256 rays a point, in a
- * stream, as a gather does; first hits of a camera in the scene; segments between points
- * of surfaces that face each other. Programs take turns, nine times, and the fastest turn
- * counts, in seconds of the processor. Rays are made for either beforehand. Embree's
- * begin 1e-5 further on, its segments are cut short by 1e-4 at both ends, where they
- * would meet the triangles that they leave; both are asked about segments without the
- * triangles that have the scene on one side. Differences of Embree's answers are counted.
+ * stream, as a gather does; segments between points of surfaces that face each other.
+ * Programs take turns, nine times, and the fastest turn counts, in seconds of the
+ * processor. Rays are made for either beforehand. Embree's begin 1e-5 further on, its
+ * segments are cut short by 1e-4 at both ends, where they would meet the triangles that
+ * they leave; both are asked about segments without the triangles that have the scene on
+ * one side. Differences of Embree's answers are counted.
+ *
+ * Beside Embree alone, the path tracer (rad/beyond/paths.c), all of it, with the same
+ * random numbers: RAYS paths, 64 from each triangle, chosen by area. The light that each
+ * finds says how much the answers differ.
  *
  * Last, a picture of 1920 x 1080 pixels of 3 x 3 rays, without a final gather, from the
  * eye that phr chooses: all of render_scanlines(), beside rtcIntersect1() alone on the
- * same rays, three turns.
- *
- * Before it, beside Embree alone, the path tracer (rad/beyond/paths.c), all of it, with
- * the same random numbers: RAYS paths, 64 from each triangle, chosen by area. The light
- * that each finds says how much the answers differ. */
+ * same rays, three turns. */
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
 #include "rad/beyond/sample.h"
@@ -65,19 +65,6 @@ static void fill_leaving(const struct bench *bench, struct rays *rays,
         rays->ends[i] =
             cosine_direction(planes[t].normal, direction_along(planes[t].normal),
                              random_unit(random), random_unit(random));
-    }
-}
-
-/* Row by row through a square that is seen at a right angle. */
-static void fill_camera(const struct bench *bench, struct rays *rays,
-                        struct random *random, int unused)
-{
-    (void)bench, (void)random, (void)unused;
-    int side = (int)sqrt((double)rays->count);
-    for (int i = 0; i < rays->count; i++) {
-        double x = 2.0 * (i % side) / side - 1.0, y = 2.0 * i / side / side - 1.0;
-        rays->origins[i] = (struct vec3){-0.05, -0.03, 0.02};
-        rays->ends[i] = (struct vec3){1.0 - x, 1.0 + x, y - 0.3};
     }
 }
 
@@ -301,7 +288,6 @@ static void bench_all(const struct bench *bench, int count, uint64_t seed)
         int together;
     } kinds[] = {{"rays from surfaces, 1 from each point", fill_leaving, 1},
                  {"rays from surfaces, 256 from each point", fill_leaving, STREAM_RAYS},
-                 {"rays of a camera", fill_camera, 0},
                  {"segments between points of surfaces", fill_segments, 0}};
     const struct scene *scene = bench->scene;
     double *sums = alloc_array((size_t)scene->input_count, sizeof *sums), sum = 0.0;

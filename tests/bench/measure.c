@@ -22,9 +22,7 @@
  * roots exchange, not the mesh. The seconds are those of linking, iterating and the final
  * gather, with the octree: of the processor, on several ranks those until the last is
  * done; a short run is made twice, and the second counts, as the path tracer's last one
- * finds its code and memory warm. `emitters` turns the relative RMS, which is that of the
- * reflected light, into one relative to all radiosity, emission included: multiply by
- * it. */
+ * finds its code and memory warm. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,8 +37,7 @@
 
 static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,"
-    "leaf_rms,"
-    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
+    "leaf_rms,leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,"
     "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise,leaves,work";
 
 /* Seconds, below which first touches of code and memory show. */
@@ -92,31 +89,7 @@ static void print_options(const struct measure *measure, int argc, char **argv)
         }
 }
 
-/* RMS of the reflected radiosity over that of all radiosity, black emitters included. */
-static double share_of_reflected(const struct truth *truth, const struct scene *scene,
-                                 const struct deviation *leaf)
-{
-    double emitted = 0.0, crossed = 0.0, area = 0.0;
-    for (int32_t root = 0; root < scene_root_count(scene); root++)
-        for (int c = 0; c < BANDS; c++) {
-            double e = scene_root_material(scene, root)->emission.band[c];
-            emitted += scene_root_area(scene, root) * e * e;
-        }
-    for (int64_t i = 0; i < truth->count; i++) {
-        const struct element *element = &truth->items[i];
-        int32_t root = (int32_t)element->id.root;
-        double a = element_area(element, scene);
-        area += a;
-        for (int c = 0; c < BANDS; c++)
-            crossed += a * scene_root_material(scene, root)->emission.band[c] *
-                       (element->mean[0].band[c] + element->mean[1].band[c]);
-    }
-    double reflected_square = area * leaf->square;
-    return sqrt(reflected_square / (reflected_square + crossed + emitted));
-}
-
-static void print_line(const struct truth *truth, const struct scene *scene,
-                       const struct measured *answer)
+static void print_line(const struct measured *answer)
 {
     const struct stats *stats = &answer->stats;
     const struct deviation *leaf = &answer->leaf, *shown = &answer->shown;
@@ -127,10 +100,9 @@ static void print_line(const struct truth *truth, const struct scene *scene,
            (long long)stats->iterations, (long long)stats->patches);
     printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
            shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
-    printf(",%.4f,%.5f,%.5f", share_of_reflected(truth, scene, leaf), leaf->bias,
-           shown->bias);
-    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%lld,%lld\n", root->rms, root->l1, root->median,
-           root->bias, root->noise, (long long)answer->leaves, (long long)answer->work);
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%lld,%lld\n", leaf->bias, shown->bias,
+           root->rms, root->l1, root->median, root->bias, root->noise,
+           (long long)answer->leaves, (long long)answer->work);
 }
 
 /* --- the path tracer --- */
@@ -219,7 +191,7 @@ static void trace(const struct measure *measure, struct solution *s, double seco
     answer.root = deviation_of_roots(forest, &measure->truth);
     answer.shown = trace_points(&measure->truth, answer.leaves, &pathtracer, (int)paths);
     printf("%s,%.0f paths a leaf", measure->options.scene, paths);
-    print_line(&measure->truth, scene, &answer);
+    print_line(&answer);
     pathtracer_free(&pathtracer);
     octree_destroy(octree);
 }
@@ -289,7 +261,7 @@ static void report(const struct measure *measure, struct solution *s,
     if (measure->header)
         printf("%s\n", HEADER);
     print_options(measure, argc, argv);
-    print_line(&measure->truth, s->scene, &answer);
+    print_line(&answer);
     if (measure->trace)
         trace(measure, s, s->seconds);
 }

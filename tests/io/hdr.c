@@ -99,30 +99,19 @@ static void test_reading(void)
                "#?RADIANCE\nEXPOSURE=1e-30\n\n-Y 1 +X 1\n\xFF\x80\0\xFF", IMAGE_LINEAR, 1,
                1, FLT_MAX, FLT_MAX, 0);
     CHECK_READ("2, 2 and 128 begin no runs",
-               HEAD "-Y 1 +X 8\n\2\2\x80\x80"
-                    "\0\0\0\0"
-                    "\0\0\0\0"
-                    "\0\0\0\0"
-                    "\0\0\0\0"
-                    "\0\0\0\0"
-                    "\0\0\0\0"
-                    "\0\0\0\0",
+               HEAD "-Y 1 +X 8\n\2\2\x80\x80\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"
+                    "\0\0\0\0\0\0\0\0",
                IMAGE_LINEAR, 8, 1, 2 / 256.0f, 2 / 256.0f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0,
                0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
 }
 
 static void test_refusing(void)
 {
-    REFUSED("\x89PNG\r\n\x1A\n",
-            "not a PNG of 8 bits a sample, without interlacing");
     REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234",
             "the format of the pixels is not RGBE");
     REFUSED("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234", "bad exposure of the picture");
-    REFUSED("#?RADIANCE\nEXPOSURE=x\n\n-Y 1 +X 1\n1234", "bad exposure of the picture");
-    REFUSED("#?RADIANCE\n", "the file ends before its picture does");
     REFUSED(HEAD, "the file ends before its picture does");
     REFUSED(HEAD "+Y 1 +X 1\n1234", "the size of the picture is not '-Y N +X N'");
-    REFUSED(HEAD "-Y 1 +X 1 1\n1234", "the size of the picture is not '-Y N +X N'");
     REFUSED(HEAD "-Y 1 +X 0\n1234", "bad width or height of the picture");
     REFUSED(HEAD "-Y 16777216 +X 16777216\n1234",
             "the file ends before its picture does");
@@ -135,8 +124,6 @@ static void test_refusing(void)
     REFUSED(HEAD "-Y 1 +X 8\n\2\2\0\x08\x89\1\x88\1\x88\1\x88\1",
             "the runs of a scanline have another length");
     REFUSED(HEAD "-Y 1 +X 8\n\2\2\0\x08\x88\1\x88\1\x88\1\0\1",
-            "the runs of a scanline have another length");
-    REFUSED(HEAD "-Y 1 +X 8\n\2\2\0\x08\x88\1\x88\1\x88\1\x08\1",
             "the runs of a scanline have another length");
 }
 

@@ -54,9 +54,6 @@ static void test_whole_file(void)
     tap_ok(output_close(&output, &error) && file_is(PATH, "newer", 5) &&
                path_is_free(BESIDE) && error.code == EXIT_DONE,
            "which then takes its place");
-    start(&output, PATH);
-    tap_ok(output_close(&output, &error) && file_is(PATH, "", 0),
-           "an empty file is a file");
 }
 
 /* After an error of another part of the program. */
@@ -123,7 +120,6 @@ static void test_probe(void)
                path_is_free(BESIDE) && error.code == EXIT_DONE,
            "probing an old file leaves it");
     check_unwritable("build");
-    check_unwritable("build/");
     check_unwritable("build/output_test_absent/file.ppm");
     check_unwritable(PATH "/file.ppm");
     check_unwritable("");
@@ -157,10 +153,6 @@ static void test_full_device(void)
         output_close(&output, &error);
         return;
     }
-    fputs("lost", output.file);
-    tap_ok(is_refused(output_close(&output, &error), path), "a few bytes: %s",
-           error.text);
-    start(&output, path);
     for (int i = 0; i < 100000; i++)
         output_uint32(&output, 1);
     tap_ok(is_refused(output_close(&output, &error), path), "many bytes: %s", error.text);
@@ -179,7 +171,7 @@ static bool writes(const char *path)
 
 static void test_modes(void)
 {
-    static const mode_t MODES[] = {0640, 0600, 0755, 0666};
+    static const mode_t MODES[] = {0600, 0755};
     struct stat status;
     for (size_t i = 0; i < sizeof MODES / sizeof MODES[0]; i++) {
         write_text(PATH, "old");
@@ -218,7 +210,7 @@ static void test_links(void)
 
 static void test_long_names(void)
 {
-    for (int length = 240; length <= 255; length += 3) {
+    for (int length = 249; length <= 255; length += 3) {
         char path[300] = "build/";
         memset(path + 6, 'n', (size_t)length);
         tap_ok(writes(path), "a name of %d bytes: %s", length, error.text);
@@ -226,7 +218,6 @@ static void test_long_names(void)
     }
 }
 
-/* A pipe that nobody reads: opening it for writing would wait, or fail. */
 /* Files that killed runs have left are named when there are too many. */
 static void test_left_behind(void)
 {
@@ -250,6 +241,7 @@ static void test_left_behind(void)
     }
 }
 
+/* A pipe that nobody reads: opening it for writing would wait, or fail. */
 static void test_pipe(void)
 {
     static const char path[] = "build/output_test.pipe";
@@ -268,10 +260,8 @@ static void test_pipe(void)
 static void test_numbers(void)
 {
     static const unsigned char expected[] = {
-        0x00, 0x00, 0x00, 0x00, /* 0 */
         0x04, 0x03, 0x02, 0x01, /* 0x01020304 */
         0xFF, 0xFE, 0xFD, 0xFC, /* 0xFCFDFEFF */
-        0x00, 0x00, 0x80, 0x3F, /* 1 */
         0x00, 0x00, 0x20, 0xC0, /* -2.5 = -1.25 * 2^1 */
         0x00, 0x00, 0x00, 0x00, /* 0 */
         0xFF, 0xFF, 0x7F, 0x7F, /* the largest: (2 - 2^-23) * 2^127 */
@@ -279,10 +269,8 @@ static void test_numbers(void)
     };
     struct output output;
     start(&output, PATH);
-    output_uint32(&output, 0);
     output_uint32(&output, 0x01020304u);
     output_uint32(&output, 0xFCFDFEFFu);
-    output_float(&output, 1.0f);
     output_float(&output, -2.5f);
     output_float(&output, 0.0f);
     output_float(&output, 3.40282346638528859812e38f);

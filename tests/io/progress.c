@@ -25,7 +25,6 @@ static void test_text(void)
     check_text("phr: refining, 0 %", -1, 0, 0.0, 9.0);
     check_text("phr: refining, level 0, 12 links, 1 %", 0, 12, 0.019, 100.0);
     check_text("phr: refining, level 3, 12 links, 50 %", 3, 12, 0.5, 0.9);
-    check_text("phr: refining, level 3, 12 links, 50 %, about 3 s left", 3, 12, 0.5, 2.5);
     check_text("phr: refining, 25 %, about 31 s left", -1, 0, 0.25, 10.0);
     check_text("phr: refining, 99 %, about 1 s left", -1, 0, 0.999, 10.0);
     check_text("phr: refining, 50 %, about 5 min left", -1, 0, 0.5, 300.0);

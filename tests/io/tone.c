@@ -1,6 +1,6 @@
 /* Tests of io/picture/tone.h. Proved are: the codes are those of the sRGB formula,
  * computed here with pow() in the forward direction, while io/picture/tone.c inverts it
- * without pow(); they are monotone and stay in range; the automatic exposure is the
+ * without pow(); they stay in range; the automatic exposure is the
  * percentile that its contract names. */
 #include "io/picture/tone.h"
 
@@ -58,41 +58,16 @@ static void test_thresholds(void)
            "the code changes within 1e-12 of each of 255 thresholds (of %d)", right);
 }
 
-static void test_monotone(void)
-{
-    struct tone tone = tone_make(1.0);
-    int falls = 0, steps = 0, last = tone_encode(&tone, 0.0);
-    for (int i = 1; i <= 1000000; i++) {
-        int code = tone_encode(&tone, i / 1000000.0);
-        falls += code < last;
-        steps += code != last;
-        last = code;
-    }
-    tap_ok(falls == 0 && steps == 255, "codes rise from 0 to 255 in single steps");
-}
-
-static void check_code(double linear, int expected)
-{
-    struct tone tone = tone_make(1.0);
-    int code = tone_encode(&tone, linear);
-    tap_ok(code == expected, "%g has the code %d (%d)", linear, expected, code);
-}
-
-/* Known codes, and numbers outside 0..1. */
+/* Numbers outside 0..1. */
 static void test_range(void)
 {
-    check_code(0.0, 0);
-    check_code(-0.0, 0);
-    check_code(1.0, 255);
-    check_code(0.5, 188);
-    check_code(0.18, 118);
-    check_code(1.0 / 255.0 / 12.92, 1);
-    check_code(-1.0, 0);
-    check_code(-1e300, 0);
-    check_code(1.0000001, 255);
-    check_code(1e300, 255);
-    check_code(HUGE_VAL, 255);
-    check_code(-HUGE_VAL, 0);
+    struct tone tone = tone_make(1.0);
+    tap_ok(tone_encode(&tone, -0.0) == 0 && tone_encode(&tone, -1e300) == 0 &&
+               tone_encode(&tone, -HUGE_VAL) == 0,
+           "less than 0 has the code 0");
+    tap_ok(tone_encode(&tone, 1.0) == 255 && tone_encode(&tone, 1e300) == 255 &&
+               tone_encode(&tone, HUGE_VAL) == 255,
+           "1 and more has the code 255");
 }
 
 static void test_exposure(void)
@@ -159,7 +134,6 @@ int main(void)
 {
     test_formula();
     test_thresholds();
-    test_monotone();
     test_range();
     test_exposure();
     test_automatic();

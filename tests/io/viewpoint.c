@@ -5,14 +5,11 @@
 #include "io/picture/viewpoint.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "io/scene/obj.h"
 #include "io/scene/sky.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
-
-#define ROOM "build/viewpoint_test.obj"
 
 enum { SIDE = 100 }; /* rays along a side of a picture */
 
@@ -22,6 +19,22 @@ struct sight {
     double depth;         /* mean distance of fronts, relative to the scene's diagonal */
 };
 
+/* Finds where ray i of a picture ends. False: nowhere. */
+static bool ray_ends(const struct scene *scene, const struct octree *octree,
+                     const struct camera *camera, bool fronts_only, int i,
+                     struct octree_hit *hit)
+{
+    struct octree_counts counts = {0};
+    double x = (i % SIDE + 0.5) * camera->width / SIDE;
+    double y = (i / SIDE + 0.5) * camera->height / SIDE;
+    struct vec3 eye = scene_from_input(scene, camera->eye),
+                direction = camera_ray(camera, x, y);
+    if (!octree_first_hit(octree, eye, direction, fronts_only, hit, &counts))
+        return false;
+    octree_hit_weights(octree, eye, direction, hit);
+    return true;
+}
+
 static struct sight look(const struct scene *scene, const struct octree *octree,
                          const struct camera *camera)
 {
@@ -29,18 +42,12 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
     struct vec3 eye = scene_from_input(scene, camera->eye);
     double diagonal = vec3_length(vec3_sub(scene->high, scene->low));
     for (int i = 0; i < SIDE * SIDE; i++) {
-        struct octree_counts counts = {0};
         struct octree_hit hit;
-        double x = (i % SIDE + 0.5) * camera->width / SIDE;
-        double y = (i / SIDE + 0.5) * camera->height / SIDE;
-        if (!octree_first_hit(octree, eye, camera_ray(camera, x, y), false, &hit,
-                              &counts))
+        if (!ray_ends(scene, octree, camera, false, i, &hit))
             continue;
-        octree_hit_weights(octree, eye, camera_ray(camera, x, y), &hit);
-        struct vec3 point = {0.0, 0.0, 0.0};
-        for (int k = 0; k < 3; k++)
-            point = vec3_add(point, vec3_scale(scene->triangles[hit.triangle].corner[k],
-                                               hit.weight[k]));
+        struct vec3 point = corners_mean(
+            scene->triangles[hit.triangle].corner,
+            (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
         bool front = scene_root_on(scene, hit.triangle, hit.front) >= 0;
         sight.fronts += front;
         sight.backs += !front;
@@ -63,18 +70,14 @@ struct shot {
 /* Returns the share of the rays of a picture that show a material. */
 static double share_of(const struct shot *shot, int32_t material)
 {
+    const struct scene *scene = shot->scene;
     const struct camera *camera = &shot->camera;
-    struct vec3 eye = scene_from_input(shot->scene, camera->eye);
     int met = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        struct octree_counts counts = {0};
         struct octree_hit hit;
-        double x = (i % SIDE + 0.5) * camera->width / SIDE;
-        double y = (i / SIDE + 0.5) * camera->height / SIDE;
-        met += octree_first_hit(shot->octree, eye, camera_ray(camera, x, y),
-                                camera->fronts_only, &hit, &counts) &&
-               scene_root_on(shot->scene, hit.triangle, hit.front) >= 0 &&
-               shot->scene->material_of[hit.triangle] == material;
+        met += ray_ends(scene, shot->octree, camera, camera->fronts_only, i, &hit) &&
+               scene_root_on(scene, hit.triangle, hit.front) >= 0 &&
+               scene->material_of[hit.triangle] == material;
     }
     return (double)met / (SIDE * SIDE);
 }
@@ -202,36 +205,6 @@ static void test_furniture(void)
     }
 }
 
-/* The generator's rooms, z up. */
-static void test_generated(void)
-{
-    for (int seed = 1; seed <= 3; seed++) {
-        char command[100];
-        struct obj_repairs repairs = {0};
-        struct error error = {0};
-        snprintf(command, sizeof command, "build/room %d %d >" ROOM, 1000 * seed * seed,
-                 seed);
-        struct scene *scene =
-            system(command) == 0 ? obj_read(ROOM, &repairs, &error) : NULL;
-        if (!tap_ok(scene != NULL, "%s: %s", command, error.text))
-            continue;
-        snprintf(command, sizeof command, "an office, seed %d", seed);
-        check_room(command, shoot(scene, 512, 384), 0.2, true);
-    }
-    remove(ROOM);
-}
-
-/* Where both sides shine, the side of a face does not tell inside from outside; and
- * lamps shine nowhere more than elsewhere. */
-static void test_two_sided(void)
-{
-    struct soup soup = furnished(true);
-    struct scene *scene = scene_of_soup(&soup);
-    scene->materials[0] = scene->materials[1];
-    scene->two_sided = scene->two_sided_lamps = true;
-    check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
-}
-
 /* A two-sided room, higher than wide: nothing but the front of a lamp at the top tells
  * which way is up, whether its back shines, too, or not. */
 static void test_two_sided_lamps(void)
@@ -254,21 +227,17 @@ static void test_two_sided_lamps(void)
  * and the lamp on its ceiling says that y is up. */
 static void test_tower(void)
 {
-    for (int lamps = 0; lamps < 2; lamps++) {
-        struct soup soup = {0};
-        soup_add_box(&soup, ZERO, point(4, 20, 3), 1, false);
-        for (int storey = 1; storey < 20; storey++)
-            soup_add_quad(&soup, point(0.5, 1.0 * storey, 0.5), point(0, 0, 2.5),
-                          point(3.5, 0, 0), 1);
-        paint(&soup, 0.5, 0.0);
-        soup_add_quad(&soup, point(1, 9.9, 1), point(1, 0, 0), point(0, 0, 1), 1);
-        paint(&soup, 0.5, 1.0);
-        struct scene *scene = scene_of_soup(&soup);
-        scene->two_sided = true;
-        scene->two_sided_lamps = lamps > 0;
-        check_room(lamps ? "with two-sided lamps" : "a two-sided tower",
-                   shoot(scene, 512, 512), 0.01, false);
-    }
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, point(4, 20, 3), 1, false);
+    for (int storey = 1; storey < 20; storey++)
+        soup_add_quad(&soup, point(0.5, 1.0 * storey, 0.5), point(0, 0, 2.5),
+                      point(3.5, 0, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(1, 9.9, 1), point(1, 0, 0), point(0, 0, 1), 1);
+    paint(&soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
+    scene->two_sided = true;
+    check_room("a two-sided tower", shoot(scene, 512, 512), 0.01, false);
 }
 
 /* Two rooms, the larger one dark, no light between them. */
@@ -362,8 +331,8 @@ static void test_cornell(void)
  * inside. */
 static void test_open_box(void)
 {
-    static const struct vec3 OPEN[] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
-    for (int k = 0; k < 4; k++) {
+    static const struct vec3 OPEN[] = {{1, 0, 0}, {0, 0, -1}};
+    for (int k = 0; k < 2; k++) {
         struct soup soup = {0};
         for (int axis = 0; axis < 3; axis++)
             for (int sign = -1; sign <= 1; sign += 2) {
@@ -482,13 +451,6 @@ static const double HIGH[] = {0.57, 0.84}, MEDIUM[] = {0.3, 0.4};
 static void test_below_sky(void)
 {
     struct soup soup = {0};
-    add_ground(&soup, 200.0);
-    soup_add_box(&soup, point(-5, -4, 0), point(5, 4, 3), 1, false);
-    soup_add_box(&soup, point(7, -2, 0), point(12, 3, 6), 1, false);
-    paint(&soup, 0.5, 0.0);
-    check_sky("two houses", &soup, 0.3, 0.1, HIGH);
-
-    soup = (struct soup){0};
     add_ground(&soup, 30.0);
     soup_add_box(&soup, point(-5, -4, 0), point(5, 4, 60), 1, false);
     paint(&soup, 0.5, 0.0);
@@ -573,8 +535,6 @@ int main(void)
     test_far_away();
     test_corridor();
     test_furniture();
-    test_generated();
-    test_two_sided();
     test_two_sided_lamps();
     test_tower();
     test_dark_room();
