@@ -99,12 +99,11 @@ set -- $(gather_tests 1) $(gather_tests 16)
 check "16 ranks are idle for at most 1.5 % of a gather" holds "1 - $3 / 16 / $4 <= 0.015"
 check "and repeat at most half a percent of it: $3 of $1" holds "$3 <= 1.005 * $1"
 
-produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
-produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
-check "the same with --flat --two-sided" same flat-3 flat-serial
-produce lamps-serial "$work/serial/phr" $cornell --flat --two-sided-lamps
-produce lamps-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided-lamps
-check "and with --flat --two-sided-lamps" same lamps-3 lamps-serial
+for twins in --two-sided --two-sided-lamps; do
+    produce $twins-serial "$work/serial/phr" $cornell --flat $twins
+    produce $twins-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat $twins
+    check "the same with --flat $twins" same $twins-3 $twins-serial
+done
 
 # power NAME: the emitted power, W.
 power() {
@@ -118,10 +117,10 @@ roots() {
 }
 
 # The Cornell box has 38 triangles, of which 2 and 3 are the lamp.
-check "--two-sided leaves the power as it is" [ "$(power flat-3)" = "$(power serial)" ]
+check "--two-sided leaves the power as it is" [ "$(power --two-sided-3)" = "$(power serial)" ]
 check "and the lamp without a twin" [ "$(roots --two-sided)" = "$(seq 0 39; seq 42 75)" ]
 check "--two-sided-lamps doubles the power" \
-    holds "($(power lamps-3) / $(power serial) - 2)^2 < 1e-24"
+    holds "($(power --two-sided-lamps-3) / $(power serial) - 2)^2 < 1e-24"
 check "and gives the lamp one" \
     [ "$(roots --two-sided-lamps)" = "$(seq 0 75)" ]
 

@@ -19,27 +19,6 @@ export LC_ALL=C
 work=$BUILD/ablation
 mkdir -p "$work"
 
-# file_of SCENE
-file_of() {
-    case $1 in
-    room*) echo "$work/$1.obj" ;;
-    *) echo "scenes/$1.obj" ;;
-    esac
-}
-
-# make_reference SCENE: with its file, unless they are there.
-make_reference() {
-    case $1 in
-    room*) cp scenes/room.mtl "$work" && build/room ${1#room} 1 >"$work/$1.obj" ;;
-    esac
-    [ ! -f "$work/$1.ref" ] || return 0
-    case $1 in
-    shadow) "$BUILD/direct" scenes/shadow.obj "$work/new.ref" ;;
-    *) $MPIEXEC -n 2 "$BUILD/reference" "$(file_of "$1")" "$work/new.ref" 5000 500 ;;
-    esac >&2
-    mv "$work/new.ref" "$work/$1.ref"
-}
-
 # measured SCENE OPTIONS...: "seconds links rays error", a line of a curve.
 measured() {
     scene=$1
@@ -176,7 +155,7 @@ balance() {
 }
 
 for entry in $SCENES; do
-    make_reference ${entry%:*}
+    make_reference ${entry%:*} 5000 500
 done
 [ -f "$OUT" ] || cp docs/ablation.md "$OUT"
 {

@@ -43,7 +43,8 @@ done)"make chart"
 : "${PAIRS:=3e-2/8 3e-2/16 3e-2/32 1e-2/64 1e-2/128 3e-3/256 1e-3/512 \
 3e-4/1024 1e-4/2048}"
 export LC_ALL=C
-folder=$BUILD/chart
+. tests/bench/renew.sh
+folder=$BUILD/chart work=$BUILD/chart
 mkdir -p "$folder"
 
 VARIANTS="paper mended links gather"
@@ -70,14 +71,6 @@ name_of() {
     basename "$1" .obj
 }
 
-file_of() {
-    case $1 in
-    */*) echo "$1" ;;
-    room*) echo "$folder/$1.obj" ;;
-    *) echo "scenes/$1.obj" ;;
-    esac
-}
-
 # of SCENE: options that belong to the scene.
 of() {
     case $1 in
@@ -96,25 +89,14 @@ make_room() {
     cp scenes/room.mtl "$folder" && build/room "$size" 1 >"$folder/$1.obj" || exit 1
 }
 
-# make_reference SCENE: with its file, unless they are there.
-make_reference() {
+# samples_of NAME: paths of an element of its reference, each way.
+samples_of() {
     case $1 in
-    room*) [ -f "$folder/$1.obj" ] || make_room "$1" ;;
+    cornell) echo 8000 ;;
+    room1004 | room6348) echo 4000 ;;
+    room18512) echo 2500 ;;
+    *) echo 1500 ;;
     esac
-    name=$(name_of "$1")
-    [ -f "$folder/$name.ref" ] && return
-    case $name in
-    cornell) samples=8000 ;;
-    room1004 | room6348) samples=4000 ;;
-    room18512) samples=2500 ;;
-    *) samples=1500 ;;
-    esac
-    case $name in
-    shadow) "$BUILD/direct" scenes/shadow.obj "$folder/new.ref" ;;
-    # Unquoted: no word, or one.
-    *) $MPIEXEC -n 2 "$BUILD/reference" "$(file_of "$1")" "$folder/new.ref" $(of "$1") \
-        10000 $samples ;;
-    esac >&2 && mv "$folder/new.ref" "$folder/$name.ref" || exit 1
 }
 
 # exceeds NUMBER LIMIT
@@ -209,7 +191,12 @@ renew_page() {
 }
 
 for scene in $SCENES; do
-    make_reference "$scene"
+    case $scene in
+    room*) [ -f "$folder/$scene.obj" ] || make_room "$scene" ;;
+    esac
+    # Unquoted: no word, or one.
+    make_reference "$scene" 10000 "$(samples_of "$(name_of "$scene")")" $(of "$scene") ||
+        exit 1
 done
 {
     echo "scene,variant,setting,seconds,links,leaves,samples,rays,leaf_rms," \

@@ -4,28 +4,18 @@
 # three epsilons. References are those of `make ablation`. About half an hour.
 # Knobs: SCENES, EPSILONS, RAYS; OUT, the page.
 set -eu
-: "${BUILD:=build/mpi}" "${MAKE:=make}" "${OUT:=docs/numbers.md}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${MAKE:=make}" "${OUT:=docs/numbers.md}"
 : "${SCENES:=cornell corridor room1000}" "${EPSILONS:=8e-4 1e-3 1.25e-3}" "${RAYS:=64}"
 export LC_ALL=C
-work=$PWD/$BUILD/numbers references=$PWD/$BUILD/ablation
-mkdir -p "$work" "$references"
-rm -rf "$work/copy" && mkdir "$work/copy"
+. tests/bench/renew.sh
+work=$PWD/$BUILD/ablation
+mkdir -p "$work"
+for scene in $SCENES; do
+    make_reference $scene 5000 500
+done
+references=$work work=$PWD/$BUILD/numbers
+rm -rf "$work/copy" && mkdir -p "$work/copy"
 cp -R Makefile ./*.[ch] geom octree rad mpi io lib tools scenes tests "$work/copy"
-
-# file_of SCENE: it is made, with its truth, unless both are there.
-file_of() {
-    case $1 in
-    room*) scene=$references/$1.obj ;;
-    *) scene=$PWD/scenes/$1.obj ;;
-    esac
-    if [ ! -f "$references/$1.ref" ]; then
-        [ -f "$scene" ] || build/room ${1#room} 1 >"$scene"
-        cp scenes/room.mtl "$references"
-        "$BUILD/reference" "$scene" "$references/new" 5000 500 >&2
-        mv "$references/new" "$references/$1.ref"
-    fi
-    echo "$scene"
-}
 
 # solve FILE: "SCENE error work" of the copy, a line for each scene.
 solve() {
@@ -33,8 +23,8 @@ solve() {
     (cd "$work/copy" && $MAKE -s BUILD=build build/measure) >"$work/log" 2>&1 || return 0
     for scene in $SCENES; do
         for epsilon in $EPSILONS; do
-            "$work/copy/build/measure" "$(file_of $scene)" "$references/$scene.ref" \
-                --epsilon $epsilon --final-gather $RAYS 2>/dev/null
+            "$work/copy/build/measure" "$(work=$references file_of $scene)" \
+                "$references/$scene.ref" --epsilon $epsilon --final-gather $RAYS 2>/dev/null
         done | awk -F, -v scene=$scene '{ square += $10 * $10; work += $NF }
             END { if (NR) print scene, sqrt(square / NR), work / NR }'
     done >"$1"

@@ -1,5 +1,5 @@
-# A page of docs/ has its words, and a command makes its tables, by processor seconds:
-# `. tests/bench/renew.sh`.
+# For commands that make tables of docs/: `. tests/bench/renew.sh`. A page has its words,
+# and a command makes its tables, by processor seconds, of scenes and their truth.
 
 # renew PAGE FROM [TO]: the standard input takes the place of the lines behind the one
 # that begins with FROM, up to the line TO, or to the end of the page. Fails, and leaves
@@ -16,4 +16,44 @@ renew() {
 # processor_seconds: of the children that a shell's `times` tells of.
 processor_seconds() {
     sed 's/[ms]/ /g' | awk 'END { print 60 * $1 + $2 + 60 * $3 + $4 }'
+}
+
+# file_of SCENE: a path, one of scenes/, or a room in $work.
+file_of() {
+    case $1 in
+    */*) echo "$1" ;;
+    room*) echo "$work/$1.obj" ;;
+    *) echo "scenes/$1.obj" ;;
+    esac
+}
+
+# make_reference SCENE ELEMENTS SAMPLES [OPTIONS]: $work/NAME.ref and, of roomN, its file,
+# unless they are there.
+make_reference() {
+    ref=$work/$(basename "$1" .obj).ref file=$(file_of "$1") elements=$2 samples=$3
+    case $1 in
+    */*) ;;
+    room*) [ -f "$file" ] ||
+        { cp scenes/room.mtl "$work" && build/room "${1#room}" 1 >"$file"; } ;;
+    esac
+    shift 3
+    [ ! -f "$ref" ] || return 0
+    case $file in
+    scenes/shadow.obj) "$BUILD/direct" "$file" "$work/new.ref" ;;
+    *) $MPIEXEC -n 2 "$BUILD/reference" "$file" "$work/new.ref" "$@" $elements \
+        $samples ;;
+    esac >&2 && mv "$work/new.ref" "$ref"
+}
+
+# run_alone NAME ARGUMENTS...: NAME.one.TURN, a report behind a line with the processor
+# seconds of its run, for each of TURNS.
+run_alone() {
+    alone=$1
+    shift
+    for turn in $TURNS; do
+        sh -c '"$@" && times' times ./phr "$@" --quiet --stats "$alone.json" \
+            >"$alone.times"
+        echo "processor $(processor_seconds <"$alone.times")" >"$alone.one.$turn"
+        cat "$alone.json" >>"$alone.one.$turn"
+    done
 }

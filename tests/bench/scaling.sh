@@ -25,19 +25,13 @@ work=$BUILD/scaling
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
 
-# measure NAME SIZE OPTIONS: NAME.one.TURN on one rank, behind a line with its processor
-# seconds; NAME.many on 32; NAME.replay.
+# measure NAME SIZE OPTIONS: NAME.one.TURN on one rank; NAME.many on 32; NAME.replay.
 measure() {
     name=$work/$1 size=$2
     shift 2
     rm -f "$name".one.*
     build/room "$size" 1 >"$name.obj"
-    for turn in $TURNS; do
-        sh -c '"$@" && times' times ./phr "$name.obj" "$@" --quiet -o "$name.ppm" \
-            --stats "$name.json" >"$name.times"
-        echo "processor $(processor_seconds <"$name.times")" >"$name.one.$turn"
-        cat "$name.json" >>"$name.one.$turn"
-    done
+    run_alone "$name" "$name.obj" "$@" -o "$name.ppm"
     $MPIEXEC -n "$RANKS" ./phr "$name.obj" "$@" --quiet -o "$name.ppm" \
         --stats "$name.many"
     "$BUILD/replay" "$RANKS,1024" "$name.obj" "$@" >"$name.replay"

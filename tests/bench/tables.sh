@@ -16,18 +16,12 @@ work=$BUILD/tables
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
 
-# measure NAME SIZE EPSILON: NAME.one.TURN on one rank, behind a line with its processor
-# seconds; NAME.BALANCE.RANKS on each number.
+# measure NAME SIZE EPSILON: NAME.one.TURN on one rank; NAME.BALANCE.RANKS on each number.
 measure() {
     name=$work/$1
     rm -f "$name".*
     build/room "$2" 1 >"$name.obj"
-    for turn in $TURNS; do
-        sh -c '"$@" && times' times ./phr "$name.obj" --paper --epsilon "$3" --quiet \
-            --stats "$name.json" >"$name.times"
-        echo "processor $(processor_seconds <"$name.times")" >"$name.one.$turn"
-        cat "$name.json" >>"$name.one.$turn"
-    done
+    run_alone "$name" "$name.obj" --paper --epsilon "$3"
     for balance in greedy none default; do
         for ranks in $RANKS; do
             $MPIEXEC -n "$ranks" ./phr "$name.obj" --paper --epsilon "$3" --quiet \
