@@ -217,12 +217,10 @@ done
 
 # --- tables ---
 
-# box: the unit cube from inside, each face a group.
-box() {
-    awk 'BEGIN {
-        for (k = 0; k < 8; k++) print "v", k % 2, int(k / 2) % 2, int(k / 4)
-        print "o floor\nf 1 2 4 3\no ceiling\nf 5 7 8 6\no front\nf 1 5 6 2"
-        print "o back\nf 3 4 8 7\no left\nf 1 3 7 5\no right\nf 2 6 8 4" }'
+# faces: the unit cube from inside, each face a group.
+faces() {
+    box 1 1 1 | awk 'BEGIN { split("floor ceiling front back left right", name) }
+        /^f/ { print "o", name[++n] } { print }'
 }
 
 # block LOW HIGH: the cube [LOW, HIGH]^3 from outside, a group.
@@ -254,7 +252,7 @@ is_reciprocal() {
         "$work/$1.csv"
 }
 
-box >"$work/box.obj"
+faces >"$work/box.obj"
 table box
 check "a box: its header" [ "$(head -n 1 "$work/box.csv")" = "from,to,area_from,F" ]
 check "its groups, in the order of the file" \
@@ -272,7 +270,7 @@ check "a box without its lid sees itself" near "$(value concave open open)" 0.8 
 check "and the lid" near "$(value concave open lid)" 0.2 1e-9 0
 check "which sees only the box" near "$(value concave lid open)" 1 1e-9 0
 
-{ box; block 0.3 0.6; } >"$work/blocked.obj"
+{ faces; block 0.3 0.6; } >"$work/blocked.obj"
 table blocked
 check "a box with a block in it: its rows sum to 1" rows_are_one blocked 1e-3
 check "reciprocity" is_reciprocal blocked
@@ -281,7 +279,7 @@ table blocked --epsilon 1e-4
 check "nearer at epsilon 1e-4" rows_are_one blocked 2e-4
 
 # A block that stands on the floor: the covered part sees nothing, the rest sees all.
-{ box; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
+{ faces; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
 table standing --epsilon 1e-4
 check "a block on the floor: the row of the floor lacks the covered part" \
     near "$(value standing floor '*')" 0.91 1e-3 0
@@ -290,7 +288,7 @@ check "so does that of the block, of which a face is hidden" \
 sed -E 's/^((floor|block),\*,.*),.*/\1,1/' "$work/standing.csv" >"$work/others.csv"
 check "the other rows sum to 1" rows_are_one others 1e-3
 
-{ box | sed 's/^o .*//'; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
+{ box 1 1 1; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
 table nameless --epsilon 1e-3
 check "without names: one group" \
     [ "$(cut -d, -f1-2 "$work/nameless.csv" | tr '\n' ' ')" = \

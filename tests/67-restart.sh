@@ -4,8 +4,8 @@
 # with the reason (every reason there is: tests/io/store.c; settings: tests/io/options.c).
 . tests/tap.sh
 
-# Small runs: files differ in the way that the code goes, not in the size. There are 80 of
-# them, on up to 4 ranks, which take 30 s. (Runs that are stopped: tests/72-faults.sh.)
+# Small runs: files differ in the way that the code goes, not in the size. (Runs that are
+# stopped: tests/72-faults.sh.)
 links="scenes/cornell.obj --epsilon 1e-3 --size 40x40 --quiet"
 gathered="$links --final-gather 16"
 cornell=$gathered
@@ -56,13 +56,12 @@ refused() {
 
 pairs="$links --linking pairs"
 run plain 2 $pairs
-for ranks in 1 3 4; do
+for ranks in 1 3; do
     run save-$ranks $ranks $pairs --save-links "$work/links-$ranks"
 done
 check "a link cache by 3 ranks is that by 1" cmp "$work/links-3" "$work/links-1"
-check "and that by 4" cmp "$work/links-4" "$work/links-1"
 check "saving changes nothing" same save-3 plain
-run load 2 $pairs --load-links "$work/links-4"
+run load 2 $pairs --load-links "$work/links-3"
 check "2 ranks go on from it" same load plain
 run load-closed 3 $pairs --load-links "$work/links-1" --solver jacobi --tolerance 1e-3
 run closed 1 $pairs --solver jacobi --tolerance 1e-3
@@ -86,19 +85,15 @@ sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/folder/cornell.mtl"
 check "another material is another scene" \
     refused "$work/links-1: made from another scene" \
     "$work/folder/cornell.obj" --epsilon 1e-3 --linking pairs --load-links "$work/links-1"
-check "made without --oracle bf" \
-    refused "$work/links-1: made with --oracle error" $pairs \
-    --load-links "$work/links-1" --oracle bf
 
 # --- checkpoints ---
 
 run plain 2 $cornell
-for ranks in 1 3 4; do
+for ranks in 1 4; do
     $MPIEXEC -n $ranks "$PHR" $cornell --max-iterations 8 \
         --checkpoint "$work/check-$ranks"
 done
-check "a checkpoint by 3 ranks is that by 1" cmp "$work/check-3" "$work/check-1"
-check "and that by 4" cmp "$work/check-4" "$work/check-1"
+check "a checkpoint by 4 ranks is that by 1" cmp "$work/check-4" "$work/check-1"
 run resume 3 $cornell --resume "$work/check-4"
 check "3 ranks go on from a checkpoint by 4" same resume plain
 cp "$work/check-1" "$work/going"
@@ -147,27 +142,16 @@ resumes jacobi 8 --solver jacobi --max-level 3
 check "--solver is bound" \
     refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
     $cornell --resume "$work/check-1" --solver jacobi
-check "so is --accuracy, which --epsilon depends on" \
-    refused "$work/check-1: made with --accuracy 0, this run has --accuracy 0.01" \
-    scenes/cornell.obj --quiet --resume "$work/check-1" --accuracy 1%
-check "so are twins of lamps" refused \
-    "$work/two-sided.check: made with --two-sided-lamps off" \
-    $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps
-cp "$work/check-1" "$work/flipped"
-printf x | dd of="$work/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
-check "one with a changed byte" \
-    refused "$work/flipped: damaged: its checksum" $cornell --resume "$work/flipped"
-
 # --- memory ---
 
 counts="checksum links patches passes iterations rays node_tests converged memory_limited
         absorbed_power"
 fine="scenes/cornell.obj --epsilon 1e-5 --size 40x40 --final-gather 16"
-for ranks in 1 2 3 4; do
+for ranks in 1 2 3; do
     run small-$ranks $ranks $fine --memory 2M \
         --checkpoint "$work/small-$ranks.check" >/dev/null
 done
-for ranks in 2 3 4; do
+for ranks in 2 3; do
     check "2 MiB on $ranks ranks are 2 MiB on one" same small-$ranks small-1
     check "its checkpoint too" cmp "$work/small-$ranks.check" "$work/small-1.check"
 done
@@ -178,17 +162,11 @@ check "2 MiB are not, and the run says so" \
 check "once" [ "$(grep -c 'phr: warning: refinement ended at the memory limit' \
     "$work/small-3.err")" -eq 1 ]
 check "so it has not converged" [ "$(stat_of "$work/small-1.json" converged)" = false ]
-check "it has fewer links" \
-    holds "$(stat_of "$work/small-1.json" links) < \
-        $(stat_of "$work/large.json" links) / 2"
-check "which absorb within 5 % as much" \
-    holds "($(stat_of "$work/small-1.json" absorbed_power) / \
-        $(stat_of "$work/large.json" absorbed_power) - 1) ^ 2 < 0.05 ^ 2"
 run grown 3 $fine --memory 1G --resume "$work/small-2.check" >/dev/null
 check "it goes on where there is more memory" \
     [ "$(stat_of "$work/grown.json" memory_limited)" = false ]
 check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
-run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
+run still 3 $fine --memory 2M --resume "$work/small-1.check" >/dev/null
 check "and not where there is not" same still small-1
 check "what it counts is within the limit" \
     holds "$(stat_of "$work/small-1.json" counted_bytes) <= 2 * 1024 ^ 2"
@@ -251,24 +229,22 @@ for ranks in 1 3; do
         >/dev/null
 done
 check "1 KiB on 3 ranks is 1 KiB on one" same least-3 least-1
-check "there are links" holds "$(stat_of "$work/least-1.json" links) > 100"
-check "and light" holds "$(stat_of "$work/least-1.json" absorbed_power) > \
+check "there is light" holds "$(stat_of "$work/least-1.json" absorbed_power) > \
     0.5 * $(stat_of "$work/least-1.json" emitted_power)"
 limit=$(stat_of "$work/least-1.json" memory_limit)
 check "a warning tells the limit in force, $limit bytes, as does --stats" \
     grep -q "more than --memory: the limit is $limit bytes, an eighth" "$work/least-3.err"
 
 room="$work/room.obj --paper --size 40x40"
-for ranks in 1 2 3; do
+for ranks in 1 3; do
     run part-$ranks $ranks $room --memory 3M --checkpoint "$work/part.check" >/dev/null
 done
-check "linking that does not fit: 2 ranks give the bytes of 1" same part-2 part-1
-check "and 3" same part-3 part-1
+check "linking that does not fit: 3 ranks give the bytes of 1" same part-3 part-1
 check "a warning says so" \
     [ "$(grep -c 'phr: warning: linking ended at the memory limit .*: light is missing' \
         "$work/part-3.err")" -eq 1 ]
-check "the links fit" holds "36 * $(stat_of "$work/part-1.json" links) < 3 * 1048576"
-check "there are some" holds "$(stat_of "$work/part-1.json" links) > 10000"
+made=$(stat_of "$work/part-1.json" links)
+check "the links fit, and there are some" holds "36 * $made < 3 * 1048576 && $made > 1e4"
 check "there is light" \
     holds "$(stat_of "$work/part-1.json" absorbed_power) > \
         0.1 * $(stat_of "$work/part-1.json" emitted_power)"

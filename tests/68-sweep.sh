@@ -17,46 +17,31 @@ newmtl lamp
 Kd 0.1 0.1 0.1
 Ke 10 8 6
 END
-box='mtllib m.mtl
-v 0 0 0
-v 1 0 0
-v 1 1 0
-v 0 1 0
-v 0 0 1
-v 1 0 1
-v 1 1 1
-v 0 1 1
+lamp='usemtl lamp
 v .4 .4 .999
 v .6 .4 .999
 v .6 .6 .999
 v .4 .6 .999
-usemtl lamp
-f 9 12 11 10
-usemtl white
-f 1 2 3 4
-f 5 8 7 6
-f 1 5 6 2
-f 2 6 7 3
-f 3 7 8 4'
-# scene NAME LINES: the box without its last wall, and these lines.
+f -4 -1 -2 -3'
+# scene NAME LINES: the box with its lamp, and these lines.
 scene() {
-    printf '%s\n%s\n' "$box" "$2" >"$work/scenes/$1.obj"
+    { printf 'mtllib m.mtl\nusemtl white\n' && box 1 1 1 && echo "$2" && echo "$lamp"; } \
+        >"$work/scenes/$1.obj"
 }
-scene closed "f 4 8 5 1"
+scene closed ""
 scene open ""
-scene doubles "f 4 8 5 1
-f 2 3 4 1
-f 8 5 1 4"
-scene overlaps "f 4 8 5 1
-v .2 .2 0
+sed -i '/^f 1 3 7 5/d' "$work/scenes/open.obj"
+scene doubles "f 2 4 3 1
+f 7 5 1 3"
+scene overlaps "v .2 .2 0
 v .9 .2 0
 v .9 .9 0
-f 13 14 15"
+f -3 -2 -1"
 scene two-sided "v .2 .2 .5
 v .8 .3 .5
 v .5 .8 .5
-f 13 14 15
-f 13 15 14"
+f -3 -2 -1
+f -3 -1 -2"
 
 # --- options: a line for each run, RANKS SCENE OPTIONS ---
 

@@ -54,13 +54,6 @@ for ranks in 1 3; do
     limited $ranks true $two --resume "$work/a.check" --checkpoint "$work/b.check"
     check "a finished run goes on, on $ranks: its checkpoint is kept as well" \
         cmp "$work/a.check" "$work/b.check"
-    if [ -c /dev/full ]; then
-        limited $ranks true $two -o "$work/b.ppm" --checkpoint /dev/full
-        check "a checkpoint on a full disk, on $ranks: one line" \
-            [ "$(cat "$work/err")" = \
-                "phr: /dev/full: cannot write: No space left on device" ]
-        check "status 1, and the picture" cmp "$work/b.ppm" "$work/c.ppm"
-    fi
 done
 
 # --- limits ---

@@ -9,31 +9,11 @@
 
 : "${PATHTRACER:=build/pathtracer}"
 
-# box RHO: a room of 40 x 30 x 25, fronts inside, that reflects RHO and emits 1.
-box() {
-    printf 'newmtl m\nKd %s %s %s\nKe 1 1 1\n' "$1" "$1" "$1" >"$work/box-$1.mtl"
-    cat <<END
-mtllib box-$1.mtl
-v 0 0 0
-v 40 0 0
-v 40 30 0
-v 0 30 0
-v 0 0 25
-v 40 0 25
-v 40 30 25
-v 0 30 25
-usemtl m
-f 1 2 3 4
-f 5 8 7 6
-f 1 5 6 2
-f 2 6 7 3
-f 3 7 8 4
-f 4 8 5 1
-END
-}
-
-box 0.5 >"$work/box-0.5.obj"
-box 0.52 >"$work/box-0.52.obj"
+# A room that reflects RHO and emits 1.
+for rho in 0.5 0.52; do
+    printf 'newmtl m\nKd %s %s %s\nKe 1 1 1\n' $rho $rho $rho >"$work/box-$rho.mtl"
+    { printf 'mtllib box-%s.mtl\nusemtl m\n' $rho; box 40 30 25; } >"$work/box-$rho.obj"
+done
 printf 'eye 20 15 12\nat 0 0 0\nsize 16 12\n' >"$work/box.view"
 "$PHR" "$work/box-0.5.obj" --max-level 3 --epsilon 1e-3 --quiet --view "$work/box.view" \
     -o "$work/phr.ply" \

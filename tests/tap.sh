@@ -60,6 +60,14 @@ two_triangles() {
     printf 'usemtl %s\nf %d %d %d\n' lamp 1 2 3 wall 4 6 5 >>"$work/two.obj"
 }
 
+# box X Y Z: OBJ of a room of this size at the origin, fronts inside: 8 vertices, 6 faces,
+# the low one and the high one of z, of y, of x.
+box() {
+    awk -v x="$1" -v y="$2" -v z="$3" 'BEGIN {
+        for (k = 0; k < 8; k++) print "v", k % 2 * x, int(k / 2) % 2 * y, int(k / 4) * z
+        print "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4" }'
+}
+
 # proves: true in `make prove`, which tries all cases; `make check` tries one of each
 # kind.
 proves() {

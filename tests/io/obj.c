@@ -19,19 +19,19 @@
 #define CORNERS "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 static struct obj_repairs repairs;
+static struct scene *last; /* that was read */
 
 static struct scene *read_scene(const char *text)
 {
+    scene_destroy(last);
     forget_error();
     write_text(OBJ, text);
-    return obj_read(OBJ, &repairs, &error);
+    return last = obj_read(OBJ, &repairs, &error);
 }
 
 static void check_refused(const char *text, const char *message)
 {
-    struct scene *scene = read_scene(text);
-    check_error(scene, message);
-    scene_destroy(scene);
+    check_error(read_scene(text), message);
 }
 
 /* A library is refused with this line by an OBJ file that is right. */
@@ -50,7 +50,6 @@ static void check_triangle(const char *name, const char *text)
         right = corner_is(scene, i, 0, 0, 0, 0) && corner_is(scene, i, 1, 1, 0, 0) &&
                 corner_is(scene, i, 2, 1, 1, 0);
     tap_ok(right, "%s%s%s", name, error.code ? ": " : "", error.text);
-    scene_destroy(scene);
 }
 
 static bool colour_is(struct rgb colour, double red, double green, double blue)
@@ -94,7 +93,6 @@ static void test_vertices(void)
     tap_ok(scene && corner_is(scene, 0, 0, 1000, -0.5, 2) &&
                corner_is(scene, 0, 1, 4, 5, 6) && corner_is(scene, 0, 2, 7, 8, 9),
            "coordinates; more numbers behind them are passed over");
-    scene_destroy(scene);
     check_triangle("unknown keywords",
                    "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"
                    "\xC3\xA9t\xC3\xA9\nvp 1\ncall x.obj\n" CORNERS "f 1 2 3\n");
@@ -150,18 +148,15 @@ static void test_normals(void)
                normal_is(scene, 2, 2, 0.6, 0, 0.8) && normal_is(scene, 3, 2, 0, 0, 1) &&
                repairs.bad_normals == 0,
            "normals, where corners have some");
-    scene_destroy(scene);
     scene = read_scene(CORNERS "vn 0 0 1\nf 1 2 3\nf 1//2 2//0 3//-2\n");
     tap_ok(scene && !scene->normals && repairs.bad_normals == 3,
            "normals that are not there");
-    scene_destroy(scene);
     scene = read_scene(
         CORNERS "vn 0 0 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 1 0\nvn\nvn 1e101 0 0\n"
                 "vn 1e-101 0 0\nvn x y z\nf 1//1 2//2 3//3 4//4\nf 1//5 2//6 3//7\n");
     tap_ok(scene && !scene->normals && repairs.bad_normals == 7 &&
                repairs.unknown_lines == 0,
            "normals without a direction");
-    scene_destroy(scene);
 }
 
 /* Colours behind coordinates. */
@@ -190,7 +185,6 @@ static void test_colours(void)
            "a lamp with a colour");
     tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 7,
            "numbers that are neither colour nor weight are counted");
-    scene_destroy(scene);
 }
 
 static void test_polygons(void)
@@ -202,7 +196,6 @@ static void test_polygons(void)
     tap_ok(scene && corner_is(scene, 1, 1, 1, 0, 0) && corner_is(scene, 2, 1, 1, 1, 0) &&
                corner_is(scene, 2, 2, 0, 1, 0) && corner_is(scene, 3, 0, 0, 1, 0),
            "its triangles follow one another");
-    scene_destroy(scene);
 }
 
 /* One face of 1000 corners: a strip 2.5 wide that winds about the origin four times. The
@@ -229,7 +222,6 @@ static void test_spiral(void)
     }
     tap_ok(right && expected > 2.5 * 25 * 10 && fabs(area / expected - 1.0) < 1e-12,
            "a spiral of %d corners is cut inside", 2 * HALF);
-    scene_destroy(scene);
     alloc_free(text);
 }
 
@@ -246,7 +238,6 @@ static void test_many_corners(void)
     struct scene *scene = read_scene(text);
     tap_ok(scene && scene->input_count == CORNER_LIMIT - 2, "a face of %d equal corners",
            (int)CORNER_LIMIT);
-    scene_destroy(scene);
     alloc_free(text);
 }
 
@@ -287,7 +278,6 @@ static void test_materials(void)
     tap_ok(repairs.materials.count == 0 && repairs.libraries.count == 0 &&
                repairs.materials.first[0] == '\0' && repairs.libraries.first[0] == '\0',
            "nothing is missing");
-    scene_destroy(scene);
 }
 
 static void test_notes(void)
@@ -318,7 +308,6 @@ static void test_notes(void)
                colour_is(material_at(scene, 10)->emission, 1, 0, 0) &&
                colour_is(material_at(scene, 11)->reflectance, 0, 0, 0),
            "spectral and xyz too; beside them numbers count");
-    scene_destroy(scene);
 }
 
 /* Finds the mean of pictures called found.png beside the library. */
@@ -362,7 +351,6 @@ static void test_textures(void)
            "pictures that are not found are counted%s", error.text);
     tap_ok(files.count == 5 && strcmp(files.name[1], "build/found.png") == 0,
            "the paths of all are told");
-    scene_destroy(scene);
     text_names_free(&files);
     repairs = (struct obj_repairs){0};
 }
@@ -376,7 +364,6 @@ static void test_passed(void)
         read_scene("mtllib obj_test.mtl\n" CORNERS "s off\nusemtl a\nf 1 2 3\ns 0\n");
     tap_ok(scene && repairs.passed_count == 0 && repairs.unknown_lines == 0,
            "of statements that say what is so no word is said: %s", repairs.passed);
-    scene_destroy(scene);
     write_text(MTL, "newmtl a\nKs .5 .5 .5\nillum 3\nTf .5 1 1\nPm 1\nnorm n.png\n"
                     "bump -bm 2 b.png\nmap_Bump b.png\nKs 1 1 1\nillum x\nhello\n");
     scene = read_scene("mtllib obj_test.mtl\n" CORNERS
@@ -386,10 +373,8 @@ static void test_passed(void)
            "others are named: %s", repairs.passed);
     tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 6,
            "as are settings of an OBJ that would change light or picture");
-    scene_destroy(scene);
     scene = read_scene(CORNERS "vn 0 0 1\ns 1\nf 1//1 2//1 3//1\n");
     tap_ok(scene && repairs.unknown_lines == 0, "smoothing that normals say");
-    scene_destroy(scene);
 }
 
 static void test_missing(void)
@@ -402,7 +387,6 @@ static void test_missing(void)
                colour_is(material_at(scene, 1)->reflectance, 0.5, 0.5, 0.5) &&
                colour_is(material_at(scene, 1)->emission, 0, 0, 0),
            "a missing material counts once for its name, and is grey");
-    scene_destroy(scene);
     scene =
         read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
                    "usemtl none\nf 1 2 3\n");
@@ -410,7 +394,6 @@ static void test_missing(void)
                strcmp(repairs.materials.first, "none") == 0 &&
                strcmp(repairs.libraries.first, "nowhere.mtl") == 0,
            "a missing library counts once for its name");
-    scene_destroy(scene);
 }
 
 static void check_libraries(const char *name, const char *line, int64_t missing)
@@ -423,7 +406,6 @@ static void check_libraries(const char *name, const char *line, int64_t missing)
                colour_is(material_at(scene, 0)->reflectance, 0.125, 0.125, 0.125) &&
                colour_is(material_at(scene, 1)->reflectance, 0.25, 0.25, 0.25),
            "%s", name);
-    scene_destroy(scene);
 }
 
 static void test_libraries(void)
@@ -471,7 +453,6 @@ static void test_many_names(void)
     for (int i = 0; i < NAMES && right; i++)
         right = material_at(scene, i)->reflectance.band[2] == i;
     tap_ok(right && repairs.materials.count == 0, "%d materials", (int)NAMES);
-    scene_destroy(scene);
     alloc_free(text);
     alloc_free(library);
 }
@@ -498,7 +479,6 @@ static void test_nameless(void)
                 m->emission.band[0] == expected[i][1];
     }
     tap_ok(right, "a material without a name: %s", error.text);
-    scene_destroy(scene);
 }
 
 static void test_bad_files(void)
@@ -542,6 +522,7 @@ int main(void)
     test_bad_libraries();
     test_nameless();
     test_bad_files();
+    scene_destroy(last);
     remove(OBJ);
     remove(MTL);
     remove(OTHER);

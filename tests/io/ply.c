@@ -21,14 +21,17 @@
 #define CORNERS "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 #define ASCII "ply\nformat ascii 1.0\n"
 
+static struct scene *last; /* that was read */
+
 static struct scene *read_bytes(const void *bytes, size_t size)
 {
     struct source source;
+    scene_destroy(last);
     forget_error();
     bool good = source_of_bytes(&source, PLY, bytes, size, &error);
-    struct scene *scene = good ? ply_read(&source, &error) : NULL;
+    last = good ? ply_read(&source, &error) : NULL;
     source_close(&source);
-    return scene;
+    return last;
 }
 
 static struct scene *read_text(const char *text)
@@ -40,10 +43,8 @@ static struct scene *read_text(const char *text)
 static void check_bytes_refused(const void *bytes, size_t size, const char *message)
 {
     char line[200];
-    struct scene *scene = read_bytes(bytes, size);
     snprintf(line, sizeof line, "%s%s", PLY, message);
-    check_error(scene, line);
-    scene_destroy(scene);
+    check_error(read_bytes(bytes, size), line);
 }
 
 static void check_refused(const char *text, const char *message)
@@ -62,9 +63,8 @@ static bool is_square(const struct scene *scene)
 
 static void check_square(const char *name, const char *text)
 {
-    struct scene *scene = read_text(text);
-    tap_ok(is_square(scene), "%s%s%s", name, error.code ? ": " : "", error.text);
-    scene_destroy(scene);
+    tap_ok(is_square(read_text(text)), "%s%s%s", name, error.code ? ": " : "",
+           error.text);
 }
 
 static void test_text(void)
@@ -197,7 +197,6 @@ static void test_binary(void)
         tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little",
                error.text);
         check_material(scene, 1, &BY_TYPE, "colours by type, emission as it is");
-        scene_destroy(scene);
     }
 }
 
@@ -209,7 +208,6 @@ static void test_lengths(void)
     for (size_t size = 0; size < file.size; size++) {
         struct scene *scene = read_bytes(file.data, size);
         accepted += scene != NULL;
-        scene_destroy(scene);
     }
     tap_ok(accepted == 0, "cut off at every byte");
     put(&file, 1, 1);
@@ -239,7 +237,6 @@ static void test_colours(void)
     struct scene *scene =
         read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
     check_material(scene, 0, &GREY, "no colours: grey");
-    scene_destroy(scene);
     scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(3) COLOURS("double")
                       "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2 0.1 0.2 0.3\n"
@@ -248,13 +245,11 @@ static void test_colours(void)
     tap_ok(scene && scene->material_count == 2 &&
                scene->material_of[2] == scene->material_of[0],
            "faces of one colour share a material");
-    scene_destroy(scene);
     scene = read_text(ASCII SQUARE FACE(2)
                       "property float emission_r\nproperty float emission_g\n"
                       "property float emission_b\nend_header\n" CORNERS
                       "3 0 1 2 5 6 7\n3 0 2 3 0 0 0\n");
     check_material(scene, 0, &GREY_LAMP, "a lamp without colours");
-    scene_destroy(scene);
 }
 
 /* Colours by each of their names, of vertices and of faces; others beside them are
@@ -276,20 +271,17 @@ static void test_names_of_colours(void)
                  colours);
         struct scene *scene = read_text(text);
         check_material(scene, 0, &MEAN, NAMES[i][0]);
-        scene_destroy(scene);
         snprintf(text, sizeof text,
                  ASCII SQUARE FACE(2) "%s" "end_header\n" CORNERS
                  "3 0 1 2 1 51 102 153\n3 2 3 0 1 0 0 0\n", colours);
         scene = read_text(text);
         check_material(scene, 0, &BY_FIFTHS, "the same of faces");
-        scene_destroy(scene);
     }
     struct scene *scene = read_text(
         ASCII SQUARE "property float r\n" COLOURS("uchar") FACE(2) "end_header\n"
         "0 0 0 9 255 0 51\n1 0 0 9 0 0 51\n1 1 0 9 0 153 51\n0 1 0 9 0 0 0\n"
         "3 0 1 2\n3 2 3 0\n");
     check_material(scene, 0, &MEAN, "a radius r beside red");
-    scene_destroy(scene);
 }
 
 /* Triangle i of a strip is (i, i + 1, i + 2), every other one turned over, so that all
@@ -313,7 +305,6 @@ static void test_strips(void)
                corner_is(scene, 4, 2, 1, 2, 0),
            "their corners");
     check_material(scene, 0, &MEAN, "the colours of its vertices");
-    scene_destroy(scene);
     snprintf(text, sizeof text, "%s3 0 1 6\n", head);
     check_refused(text, ":19: corner 6, but the last vertex is 5");
     snprintf(text, sizeof text, "%s3 0 1 -2\n", head);
@@ -333,7 +324,6 @@ static void test_concave(void)
     for (int32_t i = 0; scene && i < scene->input_count; i++)
         area += triangle_area(&scene->triangles[i]);
     tap_ok(fabs(area - 2.0) < 1e-12, "a concave face");
-    scene_destroy(scene);
 }
 
 static void test_palette(void)
@@ -436,9 +426,10 @@ static struct scene *read_source(const char *path, bool *is_ply)
     struct source source;
     forget_error();
     *is_ply = source_open(&source, path, &error) && ply_is_meant(&source);
-    struct scene *scene = *is_ply ? ply_read(&source, &error) : NULL;
+    scene_destroy(last);
+    last = *is_ply ? ply_read(&source, &error) : NULL;
     source_close(&source);
-    return scene;
+    return last;
 }
 
 static void test_choice(void)
@@ -448,7 +439,6 @@ static void test_choice(void)
     write_text("build/ply_test.mesh", text);
     struct scene *scene = read_source("build/ply_test.mesh", &is_ply);
     tap_ok(is_ply && is_square(scene), "another name, the content of PLY: read whole");
-    scene_destroy(scene);
     static const char *const OTHERS[] = {"v 0 0 0\n", "ply", "plyx", ""};
     for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++) {
         write_text("build/ply_test.mesh", OTHERS[i]);
@@ -479,5 +469,6 @@ int main(void)
     test_long_lines();
     test_row_errors();
     test_choice();
+    scene_destroy(last);
     return tap_done();
 }
