@@ -1,8 +1,7 @@
 # `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six
 # steps, over links alone, and with a final gather whose rays double with each step, in
-# the Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in
-# that scene, two-sided. References are made first, where $BUILD/prove has none. And in
-# closed rooms as much light arrives over links as leaves, within 1 %. And with half of
+# the Cornell box and in rooms of 1,004 and 6,348 triangles. References are made first,
+# where $BUILD/prove has none. And in closed rooms as much light arrives over links as leaves, within 1 %. And with half of
 # the memory that it counts, phr takes 30 MB more at most, picture and MPI included. About
 # an hour.
 #
@@ -15,14 +14,13 @@ folder=$BUILD/prove
 mkdir -p "$folder"
 cp scenes/room.mtl "$folder"
 
-# sweep NAME WAY SCENE OPTIONS...: one line for each step; WAY: links or gather.
+# sweep NAME WAY SCENE: one line for each step; WAY: links or gather.
 sweep() {
     name=$1 way=$2 scene=$3
-    shift 3
     before="" rays=16
     for epsilon in 4e-3 1e-3 2.5e-4 6.25e-5 1.5625e-5 3.90625e-6 9.765625e-7; do
         [ "$way" = gather ] || rays=0
-        now=$("$BUILD/measure" "$scene" "$folder/$name.ref" "$@" --epsilon $epsilon \
+        now=$("$BUILD/measure" "$scene" "$folder/$name.ref" --epsilon $epsilon \
             --final-gather $rays | awk -F, '{ print $10, $11, $20, $21, $16 }')
         if [ -z "$now" ]; then
             tap 1 "$name, $way, $epsilon: no measurement"
@@ -33,15 +31,12 @@ sweep() {
     done
 }
 
-# prove NAME SCENE OPTIONS...
+# prove NAME SCENE
 prove() {
-    name=$1 scene=$2
-    shift 2
-    [ -e "$folder/$name.ref" ] ||
-        "$BUILD/reference" "$scene" "$folder/$name.ref" "$@" \
-            "$ELEMENTS" "$SAMPLES" >/dev/null
-    sweep "$name" links "$scene" "$@"
-    sweep "$name" gather "$scene" "$@"
+    [ -e "$folder/$1.ref" ] ||
+        "$BUILD/reference" "$2" "$folder/$1.ref" "$ELEMENTS" "$SAMPLES" >/dev/null
+    sweep "$1" links "$2"
+    sweep "$1" gather "$2"
 }
 
 # falls RMS L1 ROOT_RMS ROOT_L1 NOISE, twice: before and now.
@@ -79,5 +74,4 @@ fits "$folder/room31933.obj"
 prove cornell scenes/cornell.obj
 prove room1000 "$folder/room1000.obj"
 prove room6350 "$folder/room6350.obj"
-[ -z "${OFFICE3-}" ] || prove office3 "$OFFICE3" --two-sided
 tap_done

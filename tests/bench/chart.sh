@@ -8,9 +8,6 @@
 #       shorter lines: a quarter of an hour where the references are there
 #   SCENES="cornell shadow" CSV=build/chart.csv make chart
 #       two scenes, drawn beside the CSV; docs/accuracy.md stays
-#   SCENES=/data/rpk_office3.obj OPTIONS=--two-sided CSV=build/office3.csv make chart
-#       a scene of one's own, which is a path with a slash in it; its OPTIONS are
-#       --two-sided, --two-sided-lamps, or none
 #
 # A point is a run on one rank. The variants:
 #   paper   --paper, nothing else: all pairs of triangles
@@ -31,7 +28,7 @@
 # the errors at most: L1 and median contain it, RMS does not.
 
 cd "$(dirname "$0")/../.." || exit 2
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${CSV:=docs/chart.csv}" "${OPTIONS:=}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${CSV:=docs/chart.csv}"
 # The command that this is, for the page.
 command=$(for knob in SCENES SECONDS_MOST EPSILONS PAIRS; do
     eval "value=\${$knob:-}"
@@ -64,17 +61,6 @@ options_of() {
     mended) echo "--paper --oracle error --form-factor polygon --epsilon $2" ;;
     links) echo "--final-gather 0 --epsilon $2" ;;
     gather) echo "--trace --epsilon ${2%/*} --final-gather ${2#*/}" ;;
-    esac
-}
-
-name_of() {
-    basename "$1" .obj
-}
-
-# of SCENE: options that belong to the scene.
-of() {
-    case $1 in
-    */*) echo "$OPTIONS" ;;
     esac
 }
 
@@ -111,10 +97,10 @@ measured() {
     [ "$2" != gather ] || limit=300
     {
         # Unquoted: one word for each option.
-        timeout $limit "$BUILD/measure" "$(file_of "$1")" "$folder/$(name_of "$1").ref" \
-            $(of "$1") $(options_of "$2" "$3") 2>>"$folder/log"
+        timeout $limit "$BUILD/measure" "$(file_of "$1")" "$folder/$1.ref" \
+            $(options_of "$2" "$3") 2>>"$folder/log"
         [ $? -ne 124 ] || : >"$folder/ended.$2"
-    } | awk -F, -v OFS=, -v scene="$(name_of "$1")" -v variant="$2" -v setting="$3" '
+    } | awk -F, -v OFS=, -v scene="$1" -v variant="$2" -v setting="$3" '
             $2 ~ / paths a leaf$/ { variant = "paths"; $4 = ""; samples = ($2 + 0) * $25 }
             { print scene, variant, setting, $3, $4, $25, samples, $5,
                     $10, $11, $12, $13, $14, $15, $16, $17 }'
@@ -147,7 +133,7 @@ turn() {
 
 # hits SCENE: its first hits, as lines of the CSV.
 hits() {
-    "$BUILD/hits" "$(file_of "$1")" 100000 | awk -v OFS=, -v scene="$(name_of "$1")" '
+    "$BUILD/hits" "$(file_of "$1")" 100000 | awk -v OFS=, -v scene="$1" '
         function line(variant, rays, paths) {
             print scene, variant, "", 1e-6 * rays / $2, "", "", paths, rays ",,,,,,,,"
         }
@@ -172,7 +158,7 @@ sweep() {
         place=$((place + 1))
     done
     for variant in $VARIANTS paths; do
-        grep "^$(name_of "$1"),$variant," "$folder/lines"
+        grep "^$1,$variant," "$folder/lines"
     done
     hits "$1"
 }
@@ -194,9 +180,7 @@ for scene in $SCENES; do
     case $scene in
     room*) [ -f "$folder/$scene.obj" ] || make_room "$scene" ;;
     esac
-    # Unquoted: no word, or one.
-    make_reference "$scene" 10000 "$(samples_of "$(name_of "$scene")")" $(of "$scene") ||
-        exit 1
+    make_reference "$scene" 10000 "$(samples_of "$scene")" || exit 1
 done
 {
     echo "scene,variant,setting,seconds,links,leaves,samples,rays,leaf_rms," \

@@ -1,11 +1,10 @@
 # make growth: rooms of 6,348 to a million triangles, from reading to a picture, on two
 # ranks, at epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with
 # gnuplot, docs/growth.svg; prints by which power of the triangles links and work grow.
-# Sizes are those that the generator is asked for. OFFICE3= and CLASSROOM= name two-sided
-# scenes that join the table. Memory is the sum of the ranks' peaks; shared memory counts
-# for each.
+# Sizes are those that the generator is asked for. Memory is the sum of the ranks' peaks;
+# shared memory counts for each.
 set -eu
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OFFICE3:=}" "${CLASSROOM:=}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}"
 : "${SIZES:=6350 18510 31933 100000 300000 1000000}" \
     "${FINE_SIZES:=6350 18510 31933 100000}"
 work=$BUILD/growth
@@ -22,16 +21,14 @@ most_of() { sed -n "s/.*\"$2\": {.*\"max\": \([0-9.e+-]*\)}.*/\1/p" "$1"; }
 # count once.
 all_of() { sed -n "s/.*\"$2\": {\"phases\": [0-9]*, \"all\": \([0-9]*\).*/\1/p" "$1"; }
 
-# grow NAME SCENE EPSILON OPTIONS: one run and its line.
+# grow SIZE EPSILON: one run and its line.
 grow() {
-    name=$1 scene=$2 epsilon=$3 json=$work/$1-$3.json
-    shift 3
-    $MPIEXEC -n 2 ./phr "$scene" --epsilon "$epsilon" "$@" --quiet \
-        -o "$work/$name-$epsilon.ppm" \
+    epsilon=$2 json=$work/$1-$2.json
+    $MPIEXEC -n 2 ./phr "$work/room$1.obj" --epsilon "$2" --quiet -o "$work/room.ppm" \
         --stats "$json"
     first=$(($(all_of "$json" linking) / 2))
     tests=$(($(number_of "$json" node_tests) + $(number_of "$json" triangle_tests)))
-    echo "$name,$epsilon,$(number_of "$json" triangles),$(number_of "$json" patches)," \
+    echo "room,$epsilon,$(number_of "$json" triangles),$(number_of "$json" patches)," \
         "$(number_of "$json" links),$(number_of "$json" rays),$tests," \
         "$((first + $(all_of "$json" splitting)))," \
         "$(number_of "$json" peak_rss_bytes_sum),$(most_of "$json" tree)," \
@@ -43,14 +40,10 @@ echo "scene,epsilon,triangles,patches,links,rays,tests,work,bytes,tree,refinemen
     >docs/growth.csv
 for size in $SIZES; do
     build/room "$size" 1 >"$work/room$size.obj"
-    grow room "$work/room$size.obj" 1e-3
+    grow "$size" 1e-3
 done
 for size in $FINE_SIZES; do
-    grow room "$work/room$size.obj" 1e-4
-done
-for epsilon in 1e-3 1e-4; do
-    [ -z "$OFFICE3" ] || grow office3 "$OFFICE3" $epsilon --two-sided
-    [ -z "$CLASSROOM" ] || grow classroom "$CLASSROOM" $epsilon --two-sided
+    grow "$size" 1e-4
 done
 # From the smallest to the largest room: log (y / y0) / log (k / k0).
 awk -F, '$1 == "room" {

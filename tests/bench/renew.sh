@@ -18,30 +18,26 @@ processor_seconds() {
     sed 's/[ms]/ /g' | awk 'END { print 60 * $1 + $2 + 60 * $3 + $4 }'
 }
 
-# file_of SCENE: a path, one of scenes/, or a room in $work.
+# file_of SCENE: one of scenes/, or a room in $work.
 file_of() {
     case $1 in
-    */*) echo "$1" ;;
     room*) echo "$work/$1.obj" ;;
     *) echo "scenes/$1.obj" ;;
     esac
 }
 
-# make_reference SCENE ELEMENTS SAMPLES [OPTIONS]: $work/NAME.ref and, of roomN, its file,
-# unless they are there.
+# make_reference SCENE ELEMENTS SAMPLES: $work/SCENE.ref and, of roomN, its file, unless
+# they are there.
 make_reference() {
-    ref=$work/$(basename "$1" .obj).ref file=$(file_of "$1") elements=$2 samples=$3
+    ref=$work/$1.ref file=$(file_of "$1")
     case $1 in
-    */*) ;;
     room*) [ -f "$file" ] ||
         { cp scenes/room.mtl "$work" && build/room "${1#room}" 1 >"$file"; } ;;
     esac
-    shift 3
     [ ! -f "$ref" ] || return 0
     case $file in
     scenes/shadow.obj) "$BUILD/direct" "$file" "$work/new.ref" ;;
-    *) $MPIEXEC -n 2 "$BUILD/reference" "$file" "$work/new.ref" "$@" $elements \
-        $samples ;;
+    *) $MPIEXEC -n 2 "$BUILD/reference" "$file" "$work/new.ref" $2 $3 ;;
     esac >&2 && mv "$work/new.ref" "$ref"
 }
 
