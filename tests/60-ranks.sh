@@ -117,7 +117,8 @@ roots() {
 }
 
 # The Cornell box has 38 triangles, of which 2 and 3 are the lamp.
-check "--two-sided leaves the power as it is" [ "$(power --two-sided-3)" = "$(power serial)" ]
+check "--two-sided leaves the power as it is" \
+    [ "$(power --two-sided-3)" = "$(power serial)" ]
 check "and the lamp without a twin" [ "$(roots --two-sided)" = "$(seq 0 39; seq 42 75)" ]
 check "--two-sided-lamps doubles the power" \
     holds "($(power --two-sided-lamps-3) / $(power serial) - 2)^2 < 1e-24"

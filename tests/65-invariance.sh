@@ -7,8 +7,8 @@
 move() {
     for file in cornell.obj cornell.view; do
         awk -v s="$1" '$1 == "v" || $1 == "eye" || $1 == "at" {
-            printf "%s %.17g %.17g %.17g\n", $1, s * $2, s * $3, s * $4; next } { print }' \
-            scenes/$file >"$work/moved.${file#*.}"
+            printf "%s %.17g %.17g %.17g\n", $1, s * $2, s * $3, s * $4; next }
+            { print }' scenes/$file >"$work/moved.${file#*.}"
     done
     cp scenes/cornell.mtl "$work/"
 }

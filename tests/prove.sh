@@ -1,9 +1,9 @@
 # `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six
 # steps, over links alone, and with a final gather whose rays double with each step, in
 # the Cornell box and in rooms of 1,004 and 6,348 triangles. References are made first,
-# where $BUILD/prove has none. And in closed rooms as much light arrives over links as leaves, within 1 %. And with half of
-# the memory that it counts, phr takes 30 MB more at most, picture and MPI included. About
-# an hour.
+# where $BUILD/prove has none. And in closed rooms as much light arrives over links as
+# leaves, within 1 %. And with half of the memory that it counts, phr takes 30 MB more at
+# most, picture and MPI included. About an hour.
 #
 # A step counts as a fall where RMS and L1, of leaves and of roots, become smaller or are
 # below the noise of the reference. Each epsilon is a quarter of the one before.

@@ -1,7 +1,7 @@
 /* A scene under test for benches of visibility: its octree, and Embree 3 beside it where
  * that is compiled in (-DWITH_EMBREE), one thread. */
-#ifndef TESTS_BENCH_BENCH_H
-#define TESTS_BENCH_BENCH_H
+#ifndef TESTS_BENCH_SUBJECT_H
+#define TESTS_BENCH_SUBJECT_H
 
 #include <inttypes.h>
 #include <math.h>

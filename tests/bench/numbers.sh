@@ -24,7 +24,8 @@ solve() {
     for scene in $SCENES; do
         for epsilon in $EPSILONS; do
             "$work/copy/build/measure" "$(work=$references file_of $scene)" \
-                "$references/$scene.ref" --epsilon $epsilon --final-gather $RAYS 2>/dev/null
+                "$references/$scene.ref" --epsilon $epsilon --final-gather $RAYS \
+                2>/dev/null
         done | awk -F, -v scene=$scene '{ square += $10 * $10; work += $NF }
             END { if (NR) print scene, sqrt(square / NR), work / NR }'
     done >"$1"

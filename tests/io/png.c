@@ -155,8 +155,8 @@ static void check_picture(int width, int height, bool smooth)
            found.height == height;
     for (size_t i = 0; read && i < samples; i++)
         read = found.rgb[i] == codes.rgb[i];
-    tap_ok(read && (!smooth || 3 * size < 2 * samples), "the pixels of the PPM in %zu bytes",
-           size);
+    tap_ok(read && (!smooth || 3 * size < 2 * samples),
+           "the pixels of the PPM in %zu bytes", size);
     alloc_free(codes.rgb);
     alloc_free(image.rgb);
     forget();
