@@ -1,7 +1,7 @@
-# viewfactors: exact without blockers, within 0.5 % with them and within 0.1 % if
-# asked for; the error is what it says, or smaller; tables have what they should have, and
-# are the same on any number of ranks and without MPI, whatever the unit of length and the
-# place of the scene.
+# viewfactors: exact without blockers (pairs: tests/55-validate.sh), within 0.5 % with
+# them and within 0.1 % if asked for; the error is what it says, or smaller; tables have
+# what they should have, and are the same on any number of ranks and without MPI, whatever
+# the unit of length and the place of the scene.
 
 . tests/tap.sh
 
@@ -24,13 +24,12 @@ near() {
         if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
 }
 
-# objs FILE POLYGONS: writes each case of a CSV file as $work/ID.obj, its polygons as
-# groups p1, p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if
-# they are two.
+# objs FILE: writes each case of a CSV file as $work/ID.obj, its polygons, whose number is
+# the third field, as groups p1, p2, ..., and lists "ID F".
 objs() {
-    awk -F, -v counted="$2" -v work="$work" 'NR > 1 {
-        polygons = counted ? $counted : 2
-        at = counted ? counted + 1 : 3
+    awk -F, -v work="$work" 'NR > 1 {
+        polygons = $3
+        at = 4
         file = work "/" $1 ".obj"
         corners = 0
         printf "" >file
@@ -51,18 +50,6 @@ objs() {
     }' "$1"
 }
 
-# --- pairs without blockers: nothing is in doubt, so that epsilon does not matter ---
-
-# The rows of the table of --validate as a CSV file: id, no text, the polygons, F.
-{ echo id,,polygons,F; sed 's/", "[^"]*"/,/; s/[{}" ]//g; s/,$//' \
-    tools/viewfactors/cases.inc; } >"$work/cases.csv"
-objs "$work/cases.csv" 0 >"$work/plain"
-check "81 pairs" [ "$(wc -l <"$work/plain")" -eq 81 ]
-while read -r id exact; do
-    table "$id" --epsilon 0.1
-    check "$id" near "$(value "$id" p1 p2)" "$exact" 1e-6 1e-12
-done <"$work/plain"
-
 # --- with blockers: F, and the largest error of F as it is told ---
 
 # claimed FILE ARGUMENTS...: the table, and the error that the run tells in $claim.
@@ -80,8 +67,8 @@ keeps_claim() {
         awk '{ print 1.5 * $1 + 1e-11 }')"
 }
 
-objs tests/formfactors_blocked.csv 3 >"$work/cases"
-objs tests/viewfactors.csv 3 >>"$work/cases"
+objs tests/formfactors_blocked.csv >"$work/cases"
+objs tests/viewfactors.csv >>"$work/cases"
 check "17 blocked pairs" [ "$(wc -l <"$work/cases")" -eq 17 ]
 while read -r id exact; do
     table "$id"
@@ -97,28 +84,6 @@ while read -r id exact; do
         esac
     done
 done <"$work/cases"
-
-# An attic: it is convex, so all is exact, also between strips too small to be split.
-awk 'function strips(name, a, b, c, d,    i, k) {
-        print "g " name
-        for (i = 0; i < 12; i++) {
-            for (k = 0; k < 4; k++) {
-                split(k < 2 ? a : d, from); split(k < 2 ? b : c, to)
-                s = (i + (k == 1 || k == 2)) / 12
-                printf "v %.17g %.17g %.17g\n", from[1] + s * (to[1] - from[1]), \
-                    from[2] + s * (to[2] - from[2]), from[3] + s * (to[3] - from[3])
-            }
-            print c == d ? "f -4 -3 -2" : "f -4 -3 -2 -1"
-        } }
-    BEGIN { strips("floor", "0 0 0", "6 1 0", "5 5 0", "-1 4 0")
-        strips("south", "6 1 0", "0 0 0", "-.5 2 2.5", "5.5 3 2.5")
-        strips("north", "-1 4 0", "5 5 0", "5.5 3 2.5", "-.5 2 2.5")
-        strips("west", "0 0 0", "-1 4 0", "-.5 2 2.5", "-.5 2 2.5")
-        strips("east", "5 5 0", "6 1 0", "5.5 3 2.5", "5.5 3 2.5") }' >"$work/attic.obj"
-claimed attic
-check "an attic: no error is told, but $claim" [ "$claim" = 0 ]
-check "its rows sum to 1" awk -F , '$2 == "*" { n++; bad += ($4 - 1) ^ 2 > 1e-24 }
-    END { exit bad || n != 5 }' "$work/attic.csv"
 
 # less FILE SCREEN: F(A, B) without screens, of which none is in the shadow of another,
 # less F(A, screens): F(A, B) past them, exact.
@@ -180,9 +145,7 @@ while read -r height hidden half; do
 done <<END
 0.15 0.05 0.9
 0.4 0.1 0.2
-0.5 0.1 0.5
 0.8 0.2 0.8
-1 0.3 0.5
 END
 
 # --- the unit of length, and which way the scene looks ---

@@ -87,7 +87,8 @@ static void test_bad_views(void)
     check_refused("", VIEW ": no 'eye' line");
     check_refused("eye 1 2 3\n", VIEW ": no 'at' line");
     check_refused("eye 1 2 3\nat 1 2 3\n", VIEW ": eye and at are the same point");
-    check_refused(PLACE "up 0 0 -3\n", VIEW ": up points along the viewing direction");
+    check_refused("up 0 1 0\neye 0 9 0\nat 0 1 0\n",
+                  VIEW ": up points along the viewing direction");
     check_refused(PLACE "up 0 0 0\n", VIEW ": up points along the viewing direction");
 }
 
