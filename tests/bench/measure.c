@@ -251,13 +251,6 @@ static void report(const struct measure *measure, struct solution *s,
         .shown = deviation_of_points(&renderer, s->scene, &measure->truth)};
     for (int64_t i = 0; i < forest->count; i++)
         answer.leaves += reflects(forest, i) && patch_is_leaf(&forest->patches[i]);
-    if (s->stats.error_estimate > 0.0)
-        fprintf(stderr,
-                "%s %.5f (rays %.5f, mesh %.5f) at epsilon %g, hold %d, rounds %lld\n",
-                s->stats.gathered.checked > 0 ? "measured" : "estimate",
-                s->stats.error_estimate, s->stats.gathered.by_rays,
-                s->stats.gathered.by_mesh, s->stats.epsilon, (int)s->stats.hold,
-                (long long)s->stats.rounds);
     if (measure->header)
         printf("%s\n", HEADER);
     print_options(measure, argc, argv);

@@ -232,13 +232,6 @@ static void test_enums(void)
                LINKING_PAIRS == 0 && LINKING_TREE == 1 && BALANCE_NONE == 0 &&
                BALANCE_GREEDY == 1 && BALANCE_DEFAULT == 2,
            "the names are in the order of the enums");
-    tap_ok(sizeof(enum oracle) == sizeof(int) &&
-               sizeof(enum form_factor) == sizeof(int) &&
-               sizeof(enum solver_kind) == sizeof(int) &&
-               sizeof(enum balance) == sizeof(int) &&
-               sizeof(enum linking_kind) == sizeof(int) &&
-               sizeof(enum show) == sizeof(int),
-           "which are as large as an int");
 }
 
 static void test_paper(void)
