@@ -34,7 +34,6 @@ lines_of_scenes        1025  1100
 lines_of_course        1833  1900
 large_structs             2     0
 structs_twice             0     0
-files_in_circles         0     0
 upstairs_lines         9847  9200
 named_numbers_upstairs  121    70
 tuned_numbers            70    70

@@ -1,6 +1,6 @@
 # Circles of objects: an object points at another if it uses a symbol that the other
 # defines, as nm sees them, over all folders. Objects that reach each other stand in a
-# circle, and none may.
+# circle, and none may; nor may files of a folder that include each other.
 
 . tests/tap.sh
 
@@ -52,6 +52,15 @@ circles() {
     }'
 }
 
+# includes: those of files of one folder, as symbols: each file defines its own name, and
+# uses those that it includes.
+includes() {
+    find phr.c geom octree rad mpi io tools -name '*.[ch]' |
+        xargs grep -H '^#include "' | sed 's/\.[ch]:#include "/ /; s/\.h"$//' |
+        awk '{ from = $1; to = $2; sub(/[^\/]*$/, "", from); sub(/[^\/]*$/, "", to) }
+            $1 != $2 && from == to { print $1 ": U " $2; print $2 ": 0 T " $2 }'
+}
+
 symbols $(find phr.c geom octree rad mpi io tools -name '*.c' | sed 's/\.c$//') \
     >"$work/symbols"
 check "nm sees main() of phr.c" grep -q '^phr: .* T _*main$' "$work/symbols"
@@ -59,6 +68,10 @@ circles <"$work/symbols" | sort >"$work/circles"
 sed -n 's/^circle/# circle:/p' "$work/circles"
 sed -n '/->/s/^/    /p' "$work/circles"
 check "no object stands in a circle" [ ! -s "$work/circles" ]
+
+includes | circles >"$work/circles"
+sed 's/^/# /' "$work/circles"
+check "no file of a folder includes itself by way of others" [ ! -s "$work/circles" ]
 
 # The test can fail: a circle of three, two of which reach a fourth.
 printf '%s\n' 'a: U of_b' 'b: U of_c' 'c: U of_a' 'c: U of_d' 'b: U of_d' \

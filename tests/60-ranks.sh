@@ -112,7 +112,7 @@ power() {
 
 # roots OPTIONS...: those of the patches, twins too.
 roots() {
-    "$work/serial/phr" $cornell --quiet --max-level 0 --dump patches "$@" |
+    "$work/serial/phr" scenes/cornell.obj --quiet --max-level 0 --dump patches "$@" |
         sed -n 's,/.*,,p'
 }
 

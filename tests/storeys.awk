@@ -1,8 +1,8 @@
 # Reads C files and prints figures of them: "what" per 1,000 words of comments; "that",
 # and "it", "they" and "them", in the folder of 1,000 words or more that has most; structs
-# with more than 16 fields, structs whose name is defined twice, circles of includes in
-# a folder; fields of the largest struct upstairs and elsewhere, with those of the structs
-# in it; numbers upstairs, with a name and without.
+# with more than 16 fields, structs whose name is defined twice; fields of the largest
+# struct upstairs and elsewhere, with those of the structs in it; numbers upstairs, with a
+# name and without.
 #
 #   awk -f tests/storeys.awk FILE.[ch]...
 
@@ -143,12 +143,6 @@ function folder_of(path)
     return match(path, /.*\//) ? substr(path, 1, RLENGTH) : ""
 }
 
-function module_of(path)
-{
-    sub(/\.[ch]$/, "", path)
-    return path
-}
-
 FNR == 1 { inside = 0; struct = statement = ""; upstairs = FILENAME ~ /beyond\// }
 
 { code = without_comments($0) }
@@ -186,27 +180,7 @@ struct {
     }
 }
 
-/^#include "/ {
-    split($0, part, "\"")
-    from = module_of(FILENAME)
-    to = module_of(part[2])
-    if (from != to && folder_of(from) == folder_of(to))
-        reaches[from, to] = 1
-    modules[from]
-}
-
 END {
-    for (middle in modules)
-        for (from in modules)
-            if ((from, middle) in reaches)
-                for (to in modules)
-                    if ((middle, to) in reaches)
-                        reaches[from, to] = 1
-    for (from in modules)
-        if ((from, from) in reaches) {
-            circular++
-            circle = circle " " from
-        }
     for (name in own_fields) {
         total = all_fields(name)
         if (total > largest[place[name]])
@@ -219,7 +193,6 @@ END {
     print "it_they_them_per_1000_words " most_of(its)
     printf "large_structs %d%s\n", large, larges
     printf "structs_twice %d%s\n", split(twice, part, " "), twice
-    printf "files_in_circles %d%s\n", circular, circle
     printf "fields_upstairs %d%s\n", largest["upstairs"], list["upstairs"]
     printf "fields_elsewhere %d%s\n", largest["elsewhere"], list["elsewhere"]
     printf "named_numbers_upstairs %d\n", named
