@@ -19,11 +19,6 @@ static double factor_left(const struct outlook *outlook)
     return sum;
 }
 
-static struct vec3 at(double x, double y, double z)
-{
-    return point(x, y, z);
-}
-
 /* A screen of eight triangles with a hole of 2 cm by 10 cm, halfway to a lamp of 9 m: the
  * factor of the visible part is that of the hole. */
 static void test_hole(void)
@@ -35,15 +30,15 @@ static void test_hole(void)
                                  {0.01, 0.05, 0.5}, {0.01, -0.05, 0.5}};
     double worst = 0.0;
     for (int place = 0; place < 10; place++) {
-        struct vec3 x = at(0.05 * place, 0.03 * place, 0.0);
+        struct vec3 x = point(0.05 * place, 0.03 * place, 0.0);
         struct outlook outlook;
         outlook_start(&outlook, x, &lamp);
         for (int i = 0; i < 9; i++) {
             double x0 = EDGE[i % 3], x1 = EDGE[i % 3 + 1], y0 = SIDE[i / 3],
                    y1 = SIDE[i / 3 + 1];
             const struct triangle half[2] = {
-                {{at(x0, y0, 0.5), at(x1, y0, 0.5), at(x1, y1, 0.5)}},
-                {{at(x0, y0, 0.5), at(x0, y1, 0.5), at(x1, y1, 0.5)}}}; /* a back */
+                {{point(x0, y0, 0.5), point(x1, y0, 0.5), point(x1, y1, 0.5)}},
+                {{point(x0, y0, 0.5), point(x0, y1, 0.5), point(x1, y1, 0.5)}}}; /* a back */
             for (int k = 0; k < 2 && i != 4; k++)
                 outlook_hide(&outlook, &half[k]);
         }
@@ -63,7 +58,7 @@ static void test_horizon(void)
     int none = 0, some = 0;
     for (int trial = 0; trial < 1000; trial++) {
         struct triangle t = random_triangle(&random, 1.0, 1.0);
-        struct vec3 x = at(random_between(&random, -2, 2), random_between(&random, -2, 2),
+        struct vec3 x = point(random_between(&random, -2, 2), random_between(&random, -2, 2),
                            random_between(&random, -1, 1));
         struct outlook outlook;
         outlook_start(&outlook, x, &t);
@@ -112,20 +107,20 @@ static void test_random(int blockers, bool exact)
     int missing = 0, extra = 0, left = 0, points = 0;
     for (int trial = 0; trial < 200; trial++) {
         struct vec3 x =
-            at(random_between(&random, 0, 1), random_between(&random, 0, 1), 0.0);
+            point(random_between(&random, 0, 1), random_between(&random, 0, 1), 0.0);
         struct triangle t[40];
         struct outlook outlook;
         outlook_start(&outlook, x, &lamp);
         for (int i = 0; i < blockers; i++) {
             for (int k = 0; k < 3; k++)
                 t[i].corner[k] =
-                    at(random_between(&random, 0, 1), random_between(&random, 0, 1),
+                    point(random_between(&random, 0, 1), random_between(&random, 0, 1),
                        random_between(&random, -0.2, 0.9));
             outlook_hide(&outlook, &t[i]);
         }
         for (int n = 0; n < 100; n++, points++) {
             double u = random_between(&random, 0, 1), v = random_between(&random, 0, 1);
-            struct vec3 y = u + v < 1.0 ? at(u, v, 1.0) : at(1.0 - u, 1.0 - v, 1.0);
+            struct vec3 y = u + v < 1.0 ? point(u, v, 1.0) : point(1.0 - u, 1.0 - v, 1.0);
             struct segment segment = segment_make(x, y);
             bool blocked = false;
             for (int i = 0; i < blockers && !blocked; i++) {
