@@ -36,9 +36,9 @@ static void test_hole(void)
         for (int i = 0; i < 9; i++) {
             double x0 = EDGE[i % 3], x1 = EDGE[i % 3 + 1], y0 = SIDE[i / 3],
                    y1 = SIDE[i / 3 + 1];
-            const struct triangle half[2] = {
+            const struct triangle half[2] = { /* a front and a back */
                 {{point(x0, y0, 0.5), point(x1, y0, 0.5), point(x1, y1, 0.5)}},
-                {{point(x0, y0, 0.5), point(x0, y1, 0.5), point(x1, y1, 0.5)}}}; /* a back */
+                {{point(x0, y0, 0.5), point(x0, y1, 0.5), point(x1, y1, 0.5)}}};
             for (int k = 0; k < 2 && i != 4; k++)
                 outlook_hide(&outlook, &half[k]);
         }
@@ -58,8 +58,9 @@ static void test_horizon(void)
     int none = 0, some = 0;
     for (int trial = 0; trial < 1000; trial++) {
         struct triangle t = random_triangle(&random, 1.0, 1.0);
-        struct vec3 x = point(random_between(&random, -2, 2), random_between(&random, -2, 2),
-                           random_between(&random, -1, 1));
+        struct vec3 x = point(random_between(&random, -2, 2),
+                              random_between(&random, -2, 2),
+                              random_between(&random, -1, 1));
         struct outlook outlook;
         outlook_start(&outlook, x, &t);
         outlook_keep_above(&outlook, UP);
