@@ -11,20 +11,16 @@ enum { TRIES = 100000 };
 static void test_float_below(void)
 {
     struct random random = random_seed(1);
-    bool below = true, largest = true, kept = true, ordered = true;
+    bool below = true, largest = true;
     for (int i = 0; i < TRIES; i++) {
         double x = ldexp(1.0 + random_unit(&random), random_below(&random, 140) - 130);
-        double y = x * (1.0 + ldexp(random_unit(&random), -random_below(&random, 40)));
         float f = float_below(x);
         below = below && (double)f <= x;
         largest = largest && (double)nextafterf(f, HUGE_VALF) > x;
-        kept = kept && float_below((double)f) == f;
-        ordered = ordered && float_below(y) >= f;
+        largest = largest && float_below((double)f) == f;
     }
     tap_ok(below, "a float below is never above");
-    tap_ok(largest, "and the next one is");
-    tap_ok(kept, "floats stay as they are");
-    tap_ok(ordered, "order is kept");
+    tap_ok(largest, "and the next one is; floats stay as they are");
     tap_ok(float_below(0.0) == 0.0f && float_below(1e-60) == 0.0f &&
                float_below(1.0 - DBL_EPSILON) < 1.0f && float_below(1e38) <= 1e38f &&
                float_below(nextafter(1.0, 0.0)) == 1.0f - 0.5f * FLT_EPSILON,
@@ -33,16 +29,13 @@ static void test_float_below(void)
 
 static void test_codes(void)
 {
-    bool kept = true, ordered = true, powers = true;
+    bool kept = true, powers = true;
     for (int code = 0; code < 256; code++) {
         double value = expand8((uint8_t)code);
         kept = kept && compact8(value) == code;
-        ordered = ordered && (code == 0 || value > expand8((uint8_t)(code - 1)));
-        ordered = ordered && (code == 0 || value <= 1.125 * expand8((uint8_t)(code - 1)));
         powers = powers && value == ldexp(1.0 + (code % 8) / 8.0, code / 8);
     }
     tap_ok(kept, "all 256 costs come back");
-    tap_ok(ordered, "in order, no step larger than an eighth");
     tap_ok(powers, "five bits of exponent, three of mantissa");
     tap_ok(expand8(0) == 1.0 && expand8(255) == 1.875 * 2147483648.0,
            "from 1 to 1.875 x 2^31");
@@ -51,19 +44,16 @@ static void test_codes(void)
 static void test_rounding(void)
 {
     struct random random = random_seed(2);
-    bool up = true, near = true, ordered = true;
+    bool up = true, near = true;
     for (int i = 0; i < TRIES; i++) {
         double x = ldexp(1.0 + random_unit(&random), random_below(&random, 31));
-        double y = x * (1.0 + ldexp(random_unit(&random), -random_below(&random, 30)));
         double found = expand8(compact8(x));
         /* On the way x becomes a float: off by 2^-24 of itself at most. */
         up = up && found >= x * (1.0 - 0x1p-24);
         near = near && found < 1.125 * x * (1.0 + 0x1p-24);
-        ordered = ordered && compact8(y) >= compact8(x);
     }
     tap_ok(up, "costs are rounded up");
     tap_ok(near, "by less than an eighth");
-    tap_ok(ordered, "and keep their order");
     tap_ok(compact8(1.0) == 0 && compact8(1.0001) == 1 && compact8(1.125) == 1 &&
                compact8(1.1251) == 2 && compact8(1.875) == 7 && compact8(1.876) == 8,
            "near 1");

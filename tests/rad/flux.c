@@ -1,5 +1,5 @@
 /* Tests of rad/flux.h: the unit is a power of two that fits its purpose, watts go to
- * integers and back, sums saturate the same way in any order, and the limit shows
+ * integers and back, sums saturate (so in any order), and the limit shows
  * divergence. */
 #include "rad/flux.h"
 
@@ -89,24 +89,17 @@ static int64_t random_flux(struct random *random)
 static void test_sums(void)
 {
     struct random random = random_seed(3);
-    bool associative = true, commutative = true, right = true;
+    bool right = true;
     int saturated = 0;
     for (int i = 0; i < TRIES; i++) {
-        int64_t a = random_flux(&random), b = random_flux(&random),
-                c = random_flux(&random);
-        int64_t sum = flux_add(a, flux_add(b, c));
-        associative = associative && sum == flux_add(flux_add(a, b), c);
-        commutative = commutative && flux_add(a, b) == flux_add(b, a);
+        int64_t a = random_flux(&random), b = random_flux(&random);
         uint64_t plain = (uint64_t)a + (uint64_t)b; /* at most 2^63 */
-        right =
-            right && (uint64_t)flux_add(a, b) ==
-                         (plain < (uint64_t)FLUX_LIMIT ? plain : (uint64_t)FLUX_LIMIT);
-        saturated += sum == FLUX_LIMIT;
+        bool full = plain >= (uint64_t)FLUX_LIMIT;
+        right = right && flux_add(a, b) == (full ? FLUX_LIMIT : (int64_t)plain);
+        saturated += full;
     }
-    tap_ok(right, "sums are exact up to the limit");
-    tap_ok(associative && saturated > TRIES / 10 && saturated < TRIES - TRIES / 10,
-           "and associative with it (%d of %d saturate)", saturated, (int)TRIES);
-    tap_ok(commutative, "and commutative");
+    tap_ok(right && saturated > TRIES / 10 && saturated < TRIES - TRIES / 10,
+           "sums are exact up to the limit (%d of %d saturate)", saturated, (int)TRIES);
     tap_ok(flux_add(FLUX_LIMIT, FLUX_LIMIT) == FLUX_LIMIT &&
                flux_add(FLUX_LIMIT, 0) == FLUX_LIMIT &&
                flux_add(FLUX_LIMIT - 1, 0) == FLUX_LIMIT - 1 &&

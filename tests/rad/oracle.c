@@ -63,21 +63,13 @@ static void test_choice(void)
     world_free(&world);
 }
 
-/* The larger patch or none: the smaller one does not stand in for it. */
+/* No patch is made that is smaller than the smallest. */
 static void test_limits(void)
 {
     struct material grey = material_grey(0.5, 1);
     struct world world = make_pair(4.0, grey, grey, NULL);
     struct model *model = &world.model;
     model->link_threshold = 0.0;
-    forest_split(model->forest, 1);
-    struct link link = link_of(0, model->forest->patches[1].children);
-    tap_ok(oracle_side_to_split(model, &link) == link.q,
-           "the larger patch is a child here");
-    model->criterion.max_level = 1;
-    tap_ok(oracle_side_to_split(model, &link) == NODE_NONE,
-           "at the deepest level nothing is split");
-    model->criterion.max_level = ID_MAX_LEVEL;
     double area = forest_area(model->forest, 1);
     struct link large = link_of(0, 1);
     model->patch_threshold = 0.25 * area;

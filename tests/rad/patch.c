@@ -1,6 +1,5 @@
 /* Tests of rad/patch.h: the size of a patch, splitting, areas that add up exactly, the
- * same tree in any order of creation, the walk depth first, equal bits along shared
- * edges. */
+ * same tree in any order of creation, the walk depth first. */
 #include "rad/patch.h"
 
 #include <string.h>
@@ -245,68 +244,6 @@ static void test_triangles(struct scene *scene)
     forest_destroy(forest);
 }
 
-static void add_corners(const struct forest *forest, int32_t root, struct soup *leaves)
-{
-    for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-        if (patch_is_leaf(&forest->patches[p]))
-            soup_add(leaves, forest_triangle(forest, p));
-}
-
-static int count_common(const struct soup *a, const struct soup *b)
-{
-    int common = 0;
-    for (int64_t i = 0; i < 3 * a->count; i++) {
-        const struct vec3 *x = &a->items[i / 3].corner[i % 3];
-        bool first = true, found = false;
-        for (int64_t j = 0; j < i; j++)
-            first = first && memcmp(x, &a->items[j / 3].corner[j % 3], sizeof *x) != 0;
-        for (int64_t j = 0; j < 3 * b->count; j++)
-            found = found || memcmp(x, &b->items[j / 3].corner[j % 3], sizeof *x) == 0;
-        common += first && found;
-    }
-    return common;
-}
-
-/* Splits each leaf of the forest once. */
-static void split_all(struct forest *forest)
-{
-    for (int64_t p = 0, count = forest->count; p < count; p++)
-        forest_split(forest, (int32_t)p);
-}
-
-/* The faces of a tetrahedron, and their twins: any two have an edge in common, with 2^L
- * + 1 points on it after L splits. A twin has all points in common with its triangle. */
-static void test_neighbours(void)
-{
-    enum { LEVEL = 4, FACES = 4, ON_EDGE = (1 << LEVEL) + 1 };
-    struct soup soup = {0}, leaves[2 * FACES] = {{.count = 0}};
-    struct random random = random_seed(5);
-    struct vec3 corner[4];
-    for (int k = 0; k < 4; k++)
-        corner[k] = random_point(&random, 0.7);
-    for (int k = 0; k < FACES; k++)
-        soup_add(&soup, (struct triangle){{corner[(k + 1) % 4], corner[(k + 3) % 4],
-                                           corner[(k + 2) % 4]}});
-    struct scene *scene = scene_of_soup(&soup);
-    scene->two_sided = true;
-    prepared(scene);
-    struct forest *forest = forest_create(scene);
-    for (int level = 0; level < LEVEL; level++)
-        split_all(forest);
-    for (int32_t r = 0; r < 2 * FACES; r++)
-        add_corners(forest, r, &leaves[r]);
-    bool right = true;
-    for (int r = 0; r < 2 * FACES; r++)
-        for (int s = 0; s < r; s++)
-            right = right && count_common(&leaves[r], &leaves[s]) ==
-                                 (r - s == FACES ? ON_EDGE * (ON_EDGE + 1) / 2 : ON_EDGE);
-    tap_ok(right, "neighbours and twins have the same bits along their edges");
-    for (int r = 0; r < 2 * FACES; r++)
-        soup_free(&leaves[r]);
-    forest_destroy(forest);
-    scene_destroy(scene);
-}
-
 int main(void)
 {
     struct scene *scene = make_scene();
@@ -316,7 +253,6 @@ int main(void)
     test_reach(scene);
     test_walk(scene);
     test_triangles(scene);
-    test_neighbours();
     scene_destroy(scene);
     return tap_done();
 }
