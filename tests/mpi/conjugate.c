@@ -7,7 +7,6 @@
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
-#include "tests/ranks.h"
 #include "tests/tap.h"
 
 enum { ROOTS = 9, BLACK = 4, LEAVES_MAX = 200 };
@@ -349,36 +348,9 @@ static void test_bound_is_sharp(const struct comm *comm)
     scene_destroy(scene);
 }
 
-/* On any number of ranks the same bits as on one. */
-static void test_ranks(const struct comm *comm, const struct comm *self, double strength)
-{
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
-                                  .tolerance = 1e-9, .max_level = 15,
-                                  .max_iterations = 1000, .balance = BALANCE_DEFAULT};
-    struct problem parallel = problem_make(comm, strength, 0.97, 5, &criterion);
-    struct problem alone = problem_make(self, strength, 0.97, 5, &criterion);
-    struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);
-    bool same = a.absorbed == b.absorbed && a.escaped == b.escaped &&
-                a.remaining == b.remaining &&
-                parallel.solver->turn.iteration == alone.solver->turn.iteration &&
-                forest_checksum(parallel.solver->model.forest) ==
-                    forest_checksum(alone.solver->model.forest);
-    for (int64_t p = 0; p < alone.solver->model.forest->count;
-         p++) /* all ranks know all radiosities */
-        same = same && memcmp(&parallel.solver->model.forest->radiosity[p],
-                              &alone.solver->model.forest->radiosity[p],
-                              sizeof(struct rgb)) == 0;
-    same = on_all(comm, same);
-    if (comm->rank == 0)
-        tap_ok(same, "links times %g: on %d ranks as on one, to the bit", strength,
-               comm->size);
-    problem_free(&parallel);
-    problem_free(&alone);
-}
-
 int main(int argc, char **argv)
 {
-    struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
+    struct comm comm;
     comm_start(&comm, &argc, &argv);
     test_dense(&comm, WEAK, 0.5, 0);
     test_dense(&comm, WEAK, 0.99, 0);
@@ -386,7 +358,6 @@ int main(int argc, char **argv)
         double strength = k ? STRONG : WEAK;
         test_dense(&comm, strength, 0.9, 6);
         test_dense(&comm, strength, 0.999, 9);
-        test_ranks(&comm, &self, strength);
         test_bound(&comm, strength);
     }
     test_dense(&comm, WEAK, 0.0, 3); /* nothing is reflected: H = F E, at once */
