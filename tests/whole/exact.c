@@ -1,5 +1,5 @@
 /* Exact answers, whole runs: the furnace, the cube that glows on one side, and where the
- * power goes; and a run that a signal ends. On any number of ranks; rank 0 reports.
+ * power goes. On any number of ranks; rank 0 reports.
  *
  * The method is the paper's: disk form factors by 16 rays and links at mixed levels. Its
  * row sums in a closed cube are not 1, so B = E / (1 - rho R) where R should be 1, and an
@@ -11,18 +11,14 @@
  * With form factors from points to polygons one level of the cube is right within the
  * errors of the points. */
 #include <math.h>
-#include <signal.h>
 #include <string.h>
 
 #include "mpi/beyond/beyond.h"
-#include "geom/signals.h"
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
 #include "geom/contour.h"
-
-static const double REFLECTANCE = 0.5;
 
 static struct scene *furnace_of(double reflectance)
 {
@@ -32,44 +28,35 @@ static struct scene *furnace_of(double reflectance)
     return cube;
 }
 
-static struct scene *furnace_create(void)
-{
-    return furnace_of(REFLECTANCE);
-}
+/* Limits to errors of B over the leaves of a furnace of rho 1/2: the largest, and that of
+ * the mean. */
+static const struct {
+    double epsilon, largest, mean;
+} FURNACES[] = {{1e-2, 0.18, 0.13},   /* measured 12.7 and 9.3 % */
+                {1e-3, 0.17, 0.045},  /* 11.6 and 3.1 % */
+                {1e-4, 0.24, 0.016},  /* 16.8 and 1.1 %: rows of mixed levels, */
+                {1e-5, 0.33, 0.007}}; /* 23.2 and 0.5 %: worse at single leaves */
 
-/* Error of B against E / (1 - rho) over the leaves: the largest, and that of the mean. */
-static void furnace_errors(const struct solution *s, double reflectance, double *largest,
-                           double *mean)
+static void test_furnace(const struct comm *comm, int number)
 {
-    const struct forest *forest = s->solver->model.forest;
-    double exact = 1.0 / (1.0 - reflectance), sum = 0.0, area = 0.0;
-    *largest = 0.0;
-    for (int64_t p = 0; p < forest->count; p++) {
-        if (!patch_is_leaf(&forest->patches[p]))
-            continue;
-        double b = forest->radiosity[p].band[0],
-               a = forest_area(forest, (int32_t)p);
-        *largest = fmax(*largest, fabs(b / exact - 1.0));
-        sum += a * b;
-        area += a;
+    double epsilon = FURNACES[number].epsilon, largest = 0.0, sum = 0.0, area = 0.0;
+    struct solution s = solve(comm, furnace_of(0.5), criterion_of(epsilon, 10, 1e-9));
+    const struct forest *forest = s.solver->model.forest;
+    int32_t p = forest_next_leaf(forest, -1);
+    for (; p >= 0; p = forest_next_leaf(forest, p)) {
+        double off = forest->radiosity[p].band[0] / 2.0 - 1.0;
+        largest = fmax(largest, fabs(off));
+        sum += forest_area(forest, p) * off;
+        area += forest_area(forest, p);
     }
-    *mean = sum / area / exact - 1.0;
-}
-
-static void test_furnace(const struct comm *comm, double epsilon, double largest_allowed,
-                         double mean_allowed)
-{
-    struct solution s = solve(comm, furnace_create(), criterion_of(epsilon, 10, 1e-9));
-    double largest, mean;
-    furnace_errors(&s, REFLECTANCE, &largest, &mean);
-    if (comm->rank == 0) {
-        tap_ok(s.vote.converged, "furnace, epsilon %g: %lld links, %lld iterations",
-               epsilon, (long long)s.stats.links, (long long)s.stats.iterations);
-        tap_ok(largest <= largest_allowed, "largest error of B %.2f %%, at most %.0f %%",
-               100.0 * largest, 100.0 * largest_allowed);
-        tap_ok(fabs(mean) <= mean_allowed, "error of the mean %+.2f %%, at most %.1f %%",
-               100.0 * mean, 100.0 * mean_allowed);
-    }
+    if (comm->rank == 0)
+        tap_ok(s.vote.converged && largest <= FURNACES[number].largest &&
+                   fabs(sum / area) <= FURNACES[number].mean,
+               "furnace, epsilon %g: largest error of B %.2f %%, at most %.0f %%, of the "
+               "mean %+.2f %%, at most %.1f %% (%lld links)",
+               epsilon, 100.0 * largest, 100.0 * FURNACES[number].largest,
+               100.0 * sum / area, 100.0 * FURNACES[number].mean,
+               (long long)s.stats.links);
     solution_free(&s);
 }
 
@@ -139,52 +126,6 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
                "%.2f %%, at most %g %%",
                name, rho, 100.0 * error, 100.0 * allowed);
     solution_free(&s);
-}
-
-/* A closed cube with walls that differ, lit from one that is black: the power at which
- * the paper's solver ends with, conjugate residuals end with too, over the same
- * links. */
-static void test_same_answer(const struct comm *comm)
-{
-    struct solution s[2];
-    for (int k = 0; k < 2; k++) {
-        struct scene *cube = cube_create();
-        for (int face = 0; face < 6; face++)
-            for (int c = 0; c < BANDS; c++)
-                cube->materials[face].reflectance.band[c] =
-                    face == 1 ? 0.0 : 0.3 + 0.1 * face + 0.05 * c;
-        for (int c = 0; c < BANDS; c++)
-            cube->materials[1].emission.band[c] = 5.0 + c;
-        struct criterion criterion = criterion_best(1e-2, 10, 1e-9);
-        criterion.solver = k ? SOLVER_CG : SOLVER_JACOBI;
-        criterion.max_level = 0;
-        criterion.linking =
-            LINKING_PAIRS; /* one pass: all iterations are over the same links */
-        s[k] = solve(comm, cube, criterion);
-    }
-    double off = 0.0;
-    const struct forest *a = s[0].solver->model.forest, *b = s[1].solver->model.forest;
-    for (int32_t p = 0; p < a->root_count; p++)
-        for (int c = 0; c < BANDS; c++)
-            off = fmax(off, fabs(a->radiosity[p].band[c] - b->radiosity[p].band[c]));
-    double emitted = s[0].stats.emitted_power;
-    double absorbed =
-        fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
-    double escaped = fabs(s[0].stats.escaped_power - s[1].stats.escaped_power) / emitted;
-    if (comm->rank == 0) {
-        /* Tolerances of 1e-9 of all light, which is below 20 W/m^2 a leaf. */
-        tap_ok(s[0].vote.converged && s[1].vote.converged && off <= 1e-7,
-               "Jacobi and conjugate residuals: B differs by %.1e W/m^2 at most", off);
-        tap_ok(absorbed <= 1e-8 && escaped <= 1e-8,
-               "and the power absorbed, also by the black face, by %.1e of all, escaped "
-               "%.1e",
-               absorbed, escaped);
-        tap_ok(2 * s[1].stats.iterations < s[0].stats.iterations,
-               "with %lld iterations in place of %lld", (long long)s[1].stats.iterations,
-               (long long)s[0].stats.iterations);
-    }
-    solution_free(&s[0]);
-    solution_free(&s[1]);
 }
 
 /* Radiosity of a node, sum over bands, W/m^2. */
@@ -291,14 +232,28 @@ static int64_t find_proxies(const struct solver *solver)
     return count;
 }
 
+/* Links that move before the levels of a solution, on all ranks together. */
+static int64_t sent_in(const struct solution *s, int ranks)
+{
+    int64_t sent = 0;
+    for (int64_t i = 0; i < s->stats.level_count; i++)
+        for (int r = 0; r < ranks; r++)
+            sent += s->stats.levels[i].shares[r].sent;
+    return sent;
+}
+
 /* The greedy plan at work: with several ranks links migrate, and after that no level of
  * many links is predicted to be uneven by more than a fiftieth. Links that are sent are
- * received, and their loads with them. Iteration 0 is initial linking. */
+ * received, and their loads with them. Iteration 0 is initial linking. With --balance
+ * none links are split where their parents were, with the same result. */
 static void test_balance(const struct comm *comm)
 {
-    struct solution s = solve(comm, furnace_create(), criterion_of(1e-4, 10, 1e-3));
+    struct criterion criterion = criterion_of(1e-4, 10, 1e-3);
+    struct solution s = solve(comm, furnace_of(0.5), criterion);
+    criterion.balance = BALANCE_NONE;
+    struct solution none = solve(comm, furnace_of(0.5), criterion);
     double worst = 1.0;
-    int64_t large = 0, sent = 0;
+    int64_t large = 0, sent = sent_in(&s, comm->size);
     bool adds_up = true, proxies = true;
     for (int64_t i = 0; i < s.stats.level_count; i++) {
         const struct level_balance *level = &s.stats.levels[i];
@@ -306,7 +261,6 @@ static void test_balance(const struct comm *comm)
         sum_shares(level, comm->size, &sum);
         adds_up = adds_up && sum.links == level->links && sum.sent == sum.received &&
                   sum.load == sum.predicted;
-        sent += sum.sent;
         if (level->pass == 0 || level->links < 100 * comm->size)
             continue;
         large++;
@@ -326,102 +280,37 @@ static void test_balance(const struct comm *comm)
                (long long)large, 100.0 * (worst - 1.0));
         tap_ok(proxies && wrong == 0,
                "every rank reports its proxies, one alone has none");
+        tap_ok(sent_in(&none, comm->size) == 0 &&
+                   none.stats.checksum == s.stats.checksum,
+               "without balancing no link moves, and the light is the same");
     }
     solution_free(&s);
-}
-
-/* --balance none: links are split where their parents were, with the same result. */
-static void test_none(const struct comm *comm)
-{
-    struct criterion criterion = criterion_of(1e-4, 10, 1e-3);
-    struct solution greedy = solve(comm, furnace_create(), criterion);
-    criterion.balance = BALANCE_NONE;
-    struct solution none = solve(comm, furnace_create(), criterion);
-    int64_t sent = 0;
-    for (int64_t i = 0; i < none.stats.level_count; i++)
-        for (int r = 0; r < comm->size; r++)
-            sent += none.stats.levels[i].shares[r].sent;
-    if (comm->rank == 0)
-        tap_ok(sent == 0 && none.stats.checksum == greedy.stats.checksum,
-               "without balancing no link moves, and the light is the same");
-    solution_free(&greedy);
     solution_free(&none);
-}
-
-/* A room with a lamp in its ceiling and a box in the middle. */
-static struct scene *room_with_box(void)
-{
-    struct soup soup = {0};
-    soup_add_box(&soup, point(0, 0, 0), point(3, 2, 3), 1, true);
-    soup_add_box(&soup, point(1, 0.5, 1), point(2, 1, 2), 1, false);
-    paint(&soup, 0.5, 0.0);
-    paint(&soup, 0.5, 10.0);
-    struct scene *scene = scene_of_soup(&soup);
-    scene->material_of[6] = scene->material_of[7] = 1;
-    return prepared(scene);
-}
-
-/* A refinement that a signal to the last rank ends counts as not begun on all ranks: its
- * links are lost, and nobody goes on from there. The signal of the first test stays for
- * the second. */
-static void test_stopped(const struct comm *comm, enum linking_kind linking)
-{
-    struct scene *scene = room_with_box();
-    struct octree *octree = octree_of(scene);
-    struct criterion criterion = criterion_best(1e-3, 10, 1e-3);
-    criterion.linking = linking;
-    struct solver *solver = beyond_create(comm, scene, octree, &criterion);
-    solver_link_roots(solver);
-    solver_assign_roots(solver);
-    if (linking == LINKING_PAIRS && comm->rank == comm->size - 1)
-        raise(SIGTERM); /* after linking, which would heed it, too */
-    bool whole = solver_refine(solver);
-    int64_t wrong = whole || solver->turn.pass != 0 || solver->turn.stop != SIGTERM;
-    comm_add(comm, &wrong, 1);
-    if (comm->rank == 0)
-        tap_ok(wrong == 0, "a signal to the last rank ends refinement of %s on all ranks",
-               linking == LINKING_PAIRS ? "pairs" : "the tree");
-    solver_destroy(solver);
-    octree_destroy(octree);
-    scene_destroy(scene);
 }
 
 int main(int argc, char **argv)
 {
     struct comm comm;
     comm_start(&comm, &argc, &argv);
-    test_iteration_stop(&comm, 0.5, 1e-6);
     test_iteration_stop(&comm, 0.9, 1e-6);
     struct criterion paper = criterion_of(1.0, 0, 1e-9);
-    test_glowing_cube(&comm, 0.2, 0.17, &paper,
-                      "disks"); /* measured 12.6 %: single factors, */
-    test_glowing_cube(&comm, 0.5, 0.15, &paper, "disks"); /* 11.3 %: rows of 0.973, and */
-    test_glowing_cube(&comm, 0.8, 0.19, &paper,
-                      "disks"); /* 14.3 %: 1 / (1 - 0.8 R) is 10 % low */
+    /* measured 12.6 %: single factors; 14.3 %: 1 / (1 - 0.8 R) is 10 % low */
+    test_glowing_cube(&comm, 0.2, 0.17, &paper, "disks");
+    test_glowing_cube(&comm, 0.8, 0.19, &paper, "disks");
     struct criterion best = criterion_best(1.0, 0, 1e-9);
     best.linking =
         LINKING_PAIRS; /* each pair of triangles by its own factor, at any epsilon */
     /* The twelve points of a triangle miss the factor of one that it touches by 1 % or
-     * so. */
-    test_glowing_cube(&comm, 0.2, 0.015, &best, "polygons"); /* measured 1.21 % */
-    test_glowing_cube(&comm, 0.5, 0.007, &best, "polygons"); /* 0.55 % */
-    test_glowing_cube(&comm, 0.8, 0.003, &best, "polygons"); /* 0.22 % */
-    test_furnace(&comm, 1e-2, 0.18, 0.13); /* measured 12.7 and 9.3 % */
-    test_furnace(&comm, 1e-3, 0.17, 0.045); /* 11.6 and 3.1 % */
-    test_furnace(&comm, 1e-4, 0.24, 0.016); /* 16.8 and 1.1 %: rows of mixed levels, */
-    test_furnace(&comm, 1e-5, 0.33, 0.007); /* 23.2 and 0.5 %: worse at single leaves */
-    test_same_answer(&comm);
+     * so: 1.21 and 0.22 % measured. */
+    test_glowing_cube(&comm, 0.2, 0.015, &best, "polygons");
+    test_glowing_cube(&comm, 0.8, 0.003, &best, "polygons");
+    for (int k = 0; k < 4; k++)
+        test_furnace(&comm, k);
     struct criterion power = criterion_of(1e-4, 10, 1e-12);
     test_power(&comm, &power, "paper");
     power = criterion_best(1e-4, 10, 1e-12);
     test_power(&comm, &power, "error oracle, polygons, cg, tree");
-    power.linking = LINKING_PAIRS;
-    test_power(&comm, &power, "error oracle, polygons, cg, pairs");
     test_balance(&comm);
-    test_none(&comm);
-    signals_catch();
-    test_stopped(&comm, LINKING_PAIRS);
-    test_stopped(&comm, LINKING_TREE); /* the signal stays */
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }
