@@ -148,13 +148,11 @@ static void test_interreflection(double rho, double exact, const char *words)
     solution_free(&s);
 }
 
-/* The CIE's column. */
+/* Of the CIE's column. */
 static const struct {
     double rho, lux;
 } INTERREFLECTION[] = {
-    {0.05, 5.482456}, {0.1, 11.574074}, {0.2, 26.041667}, {0.3, 44.642857},
-    {0.4, 69.444444}, {0.5, 104.166667}, {0.6, 156.25}, {0.7, 243.055556},
-    {0.8, 416.666667}, {0.9, 937.5}, {0.95, 1979.166667}, {0.99, 10312.5},
+    {0.05, 5.482456}, {0.4, 69.444444}, {0.7, 243.055556}, {0.9, 937.5},
     {0.999, 104062.5}};
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
@@ -167,7 +165,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
         test_interreflection(rho, exact, "--epsilon 1e-2 --tolerance 1e-8");
-        if (i % 4 == 0 && (i <= 4 || tap_proves())) /* the default epsilon takes longer */
+        if (i == 1) /* the default epsilon takes longer */
             test_interreflection(rho, exact, "--tolerance 1e-4");
     }
     comm_stop(&world_comm);

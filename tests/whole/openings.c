@@ -11,8 +11,7 @@
  * claim; the answer is right in the mean, where few rays find light at all (behind a
  * keyhole 64 rays a leaf do not); and more rays leave less noise. The mean is that over
  * orders of the faces, each with rays and segments of its own, and is known as well as
- * these scatter: within four standard errors, Student's 1 % for six orders (eight in
- * `make prove`): 60 runs of .15 s. */
+ * these scatter: within four standard errors, Student's 1 % for six orders. */
 #include <math.h>
 
 #include "geom/contour.h"
@@ -23,7 +22,7 @@
 
 static const double SIZE = 3.0;
 
-static int orders = 6; /* of the faces */
+enum { ORDERS = 6 }; /* of the faces */
 static int rays = 64;
 
 /* The walls of a room from x on without the floor and the wall to the other room; `from`
@@ -131,32 +130,30 @@ static double test_opening(const char *name, double thick, struct vec3 low,
 {
     double sum = 0.0, squares = 0.0;
     int within = 0;
-    for (int order = 0; order < orders; order++) {
+    for (int order = 0; order < ORDERS; order++) {
         struct soup soup = {0};
         int32_t count = add_rooms(&soup, thick, low, high, one_floor, order);
         struct answer_in_dark dark = light_of(&soup, count);
         double off = dark.light / truth - 1.0;
-        sum += off / orders;
-        squares += off * off / orders;
+        sum += off / ORDERS;
+        squares += off * off / ORDERS;
         within += fabs(off) * truth <= dark.error;
         printf("# %s order %d: off %+.3f, claimed %.3f\n", name, order, off,
                dark.error / truth);
     }
-    double error = sqrt(fmax(0.0, squares - sum * sum) / (orders - 1));
+    double error = sqrt(fmax(0.0, squares - sum * sum) / (ORDERS - 1));
     if (!rare)
         tap_ok(fabs(sum) <= 4.0 * error + 0.004,
                "light through a %s is off by %+.1f %% in the mean, of orders that leave "
                "%.1f %% in doubt", name, 100.0 * sum, 100.0 * error);
-    tap_ok(10 * within >= 9 * orders - 5, "%s: %d of %d orders are within the claim",
-           name, within, orders);
+    tap_ok(10 * within >= 9 * ORDERS - 5, "%s: %d of %d orders are within the claim",
+           name, within, ORDERS);
     return sqrt(squares);
 }
 
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
-    if (tap_proves())
-        orders = 8;
     struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
     struct vec3 key = point(0, 1.6, 1.0), end = point(0, 1.61, 1.03);
     test_opening("gap below a door", 0.04, low, high, false, 2.505e-4, false);
