@@ -3,24 +3,18 @@
  * The elements are much finer than the leaves they are to judge and all of about one
  * size, so the mean over any leaf is that of the elements in it. Their means are found by
  * light paths, which serve all elements at once: an element that has the share s of all
- * the light that arrives somewhere is known to 1 / sqrt(s N) by N of them. Light is added
- * in fixed point where it lands, so sums are the same in any order and on any ranks.
- * Rejected: paths from each element on. With as many rays they have some five times the
- * noise in a furnished room of 6,348 triangles.
+ * the light that arrives somewhere is known to 1 / sqrt(s N) by N of them; paths from
+ * each element on have some five times the noise. Light is added in fixed point where it
+ * lands, so sums are the same in any order and on any ranks. Of faces that lie on each
+ * other a light path meets one; its light lands on the others, too.
  *
  * A point has no area on which light could land: paths that begin there tell its light.
  * An element of area a gets them in proportion to sqrt(a), which has the least noise,
  * weighted by area, for as many paths in all. Each point is random in its element: an
- * even grid would meet the leaves' corners or their centres alone. Rejected: more paths
- * for fewer points. In rooms a few points near lamps have most of the error of pictures,
- * and among 4,000 points they are too few to tell it: RMS of 6 to 9 % where all have 6.
+ * even grid would meet the leaves' corners or their centres alone. (Of fewer points too
+ * few are near lamps, where pictures have most of their error.)
  *
- * Of faces that lie on each other a light path meets one. Its light lands on the others,
- * too: the light of a surface is that which comes to its plane, as paths from it tell.
- *
- * Two estimates instead of one of twice the paths: the product of the deviations from
- * both has the square of the error as its expectation, without the variance of the
- * estimates, which does not vanish (tests/deviation.c). */
+ * Why two estimates: tests/deviation.h. */
 #include "tests/truth.h"
 
 #include <math.h>
@@ -28,7 +22,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "tests/random.h"
+#include "tests/scenes.h"
 
 static bool reflects(const struct scene *scene, int32_t root)
 {
@@ -267,11 +261,7 @@ static void place_point(struct element *element, int64_t number)
     struct random random = random_seed((uint64_t)number + 1);
     for (int k = 0; k < 4; k++)
         random_bits(&random); /* the first numbers of neighbouring seeds are alike */
-    double u = random_unit(&random), v = random_unit(&random);
-    bool beyond = u + v > 1.0;
-    u = beyond ? 1.0 - u : u;
-    v = beyond ? 1.0 - v : v;
-    struct vec3 x = corners_mean(part.corner, (struct vec3){1.0 - u - v, u, v});
+    struct vec3 x = random_point_on(&random, &part);
     for (int axis = 0; axis < 3; axis++)
         element->weight[axis] = vec3_axis(x, axis);
 }
