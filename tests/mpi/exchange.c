@@ -15,7 +15,6 @@
 #include "mpi/beyond/beyond.h"
 #include "mpi/broadcast.h"
 #include "mpi/migrate.h"
-#include "mpi/picture.h"
 
 #include <string.h>
 
@@ -409,50 +408,6 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     scene_destroy(cube);
 }
 
-/* With more ranks than roots some own nothing; the picture has fewer rows than ranks. */
-static void test_picture(const struct comm *comm)
-{
-    enum { HEIGHT = 5, ROW = 6 };
-    float *rows = alloc_array(HEIGHT * ROW, sizeof *rows);
-    int mine = 0;
-    for (int y = comm->rank; y < HEIGHT; y += comm->size)
-        for (int x = 0; x < ROW; x++)
-            rows[mine++] = (float)(100 * y + x);
-    float *picture = picture_gather(comm, rows, ROW, HEIGHT);
-    bool right = (picture != NULL) == (comm->rank == 0);
-    for (int i = 0; i < HEIGHT * ROW && picture; i++)
-        right = right && picture[i] == (float)(100 * (i / ROW) + i % ROW);
-    report(comm, right, "rows of a picture find their places");
-    alloc_free(picture);
-}
-
-/* From rank s to rank r go (7 s + 3 r) mod 11 records. */
-static void test_exchange(const struct comm *comm)
-{
-    enum { MOST = 11 };
-    struct note {
-        int32_t from, to, number;
-    };
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    struct note *notes = alloc_array((size_t)comm->size * MOST, sizeof *notes);
-    int64_t sent = 0, arriving, expected = 0;
-    for (int r = 0; r < comm->size; r++) {
-        counts[r] = (7 * comm->rank + 3 * r) % MOST;
-        for (int i = 0; i < counts[r]; i++)
-            notes[sent++] = (struct note){comm->rank, r, i};
-    }
-    struct note *in = comm_exchange(comm, notes, counts, sizeof *notes, &arriving);
-    bool right = true;
-    for (int s = 0; s < comm->size; s++)
-        for (int i = 0; i < (7 * s + 3 * comm->rank) % MOST; i++, expected++)
-            right = right && expected < arriving && in[expected].from == s &&
-                    in[expected].to == comm->rank && in[expected].number == i;
-    report(comm, right && arriving == expected, "records arrive in order");
-    alloc_free(in);
-    alloc_free(notes);
-    alloc_free(counts);
-}
-
 int main(int argc, char **argv)
 {
     struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
@@ -464,9 +419,7 @@ int main(int argc, char **argv)
     test_migration(parallel, alone);
     solver_destroy(parallel);
     solver_destroy(alone);
-    test_picture(&comm);
     test_gather_all(&comm);
-    test_exchange(&comm);
     test_sums(&comm);
     test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
