@@ -121,18 +121,6 @@ static void test_guess(double part, double odd, double precise, const char *what
     world_free(&room);
 }
 
-/* The room whose fronts are outside: its twins, inside, are a furnace; a box reflects
- * nothing to its own outside, which is convex. */
-static void test_two_sided(void)
-{
-    struct world room = furnace(true);
-    int32_t inside = room.scene->input_count + 3;
-    expect(trace(&room, inside, &WHOLE, 1), 8.0, 0.004,
-           "two-sided furnace, a twin: rho H");
-    expect(trace(&room, 3, &WHOLE, 1), 0.0, 0.0, "its other side, outside: rho H");
-    world_free(&room);
-}
-
 /* --- direct light --- */
 
 /* A floor that reflects 0.5, a black light of side 1 with E = 4 at height 1 that faces
@@ -294,7 +282,6 @@ int main(void)
     test_guess(1.0, 3.0, 0.004, "one that is wrong on parts of roots");
     test_guess(2.0, 1.0, 0.006, "one that is too bright");
     test_pixel();
-    test_two_sided();
     test_direct();
     test_flush();
     test_turned();
