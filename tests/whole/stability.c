@@ -1,7 +1,7 @@
 /* Pitfalls of radiosity programs: one test for each entry of a checklist, but for those
  * that other tests cover:
  *
- *     F <= 1, G <= the smaller area      here, after refinement; formfactor.c, contour.c
+ *     F <= 1, G <= the smaller area      formfactor.c, patch_exchange.c, contour.c
  *     singular shared edges              contour.c, 55-validate.sh
  *     drift of row sums, rho to 0.999    whole.c
  *     false convergence                  exact.c, conjugate.c
@@ -102,37 +102,6 @@ static struct solution solve_furnished(double lamp, double box, const char *word
 }
 
 /* --- form factors and solver --- */
-
-/* A unit square 0.1 below a larger one: nearly all that leaves it arrives there. */
-static void test_bounds(const char *words)
-{
-    struct soup soup = {0};
-    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
-    paint(&soup, 0.5, 1.0);
-    struct solution s = solve_soup(&soup, words);
-    const struct forest *forest = s.solver->model.forest;
-    double largest = 0.0, f = 0.0, exact = 0.0;
-    for (int64_t i = 0; i < s.solver->links.count; i++) {
-        const struct link *link = &s.solver->links.items[i];
-        double least = fmin(forest_area(forest, link->p), forest_area(forest, link->q));
-        bool right = link_area(link) >= 0.0 && (double)link->area <= least;
-        largest = fmax(largest, right ? link_area(link) / least : HUGE_VAL);
-        f += link_area(link) / (2.0 * forest_area(forest, 0));
-    }
-    for (int i = 0; i < 4; i++)
-        exact += triangle_exchange(&s.scene->triangles[i / 2],
-                                   &s.scene->triangles[2 + i % 2]) /
-                 (2.0 * forest_area(forest, 0));
-    tap_ok(largest > 0.1 && largest <= 1.0,
-           "0 <= G <= the smaller area%s%s: at most %.3f of it on "
-           "%lld links",
-           *words ? ", " : "", words, largest, (long long)s.stats.links);
-    tap_ok(f <= 1.0 && (*words || fabs(f / exact - 1.0) <= 0.01),
-           "a square below a large one: F %.5f, exact %.5f",
-           f, exact); /* 1 %: as the default epsilon has it elsewhere */
-    solution_free(&s);
-}
 
 /* --- geometry --- */
 
@@ -459,8 +428,6 @@ static void test_order(bool turn)
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
-    test_bounds("");
-    test_bounds("--linking pairs --epsilon 1e30");
     test_leak();
     test_sheet();
     test_duplicates(0.3, "--epsilon 1e-4 --final-gather 0", 2.5,
