@@ -6,24 +6,14 @@
  *     drift of row sums, rho to 0.999    whole.c
  *     false convergence                  exact.c, conjugate.c
  *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, obj.c, scene.c
- *     light leaks                        here; leaks.c
- *     coplanar overlap, duplicates       here; lamps.c
  *     covered patches, interpenetration  whole.c
- *     slivers                            here
- *     faces without area                 here; scene.c counts them
  *     scale, offset                      65-invariance.sh
- *     a wide ground                      here
- *     scale of the emission              here
- *     a tiny bright light                here
  *     16 levels                          options.c refuses them; 15 here
  *     oscillation, termination           a run of each test converges
  *     rays through edges and corners     octree.c, bundles.c
  *     T-vertices                         shading.c
  *     partial visibility                 lamps.c, openings.c
- *     flipped faces                      here
  *     open scenes                        exact.c, the links' own sum
- *     order of faces and corners         here
- *     linearity                          here
  *     reciprocity                        node.c
  *
  * All with phr's defaults but for the options that a test names. */
