@@ -29,12 +29,6 @@ static bool tap_ok(bool passed, const char *format, ...)
     return passed;
 }
 
-/* True in `make prove`, which tries all cases; `make check` tries one of each kind. */
-static inline bool tap_proves(void)
-{
-    return getenv("PROVE") != NULL;
-}
-
 /* To end main() with: the leak test, the plan, the verdict. */
 static inline int tap_done(void)
 {
