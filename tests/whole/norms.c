@@ -151,19 +151,22 @@ static void test_roots(void)
     world_free(&world);
 }
 
-/* A floor of two triangles, a black light of two above it, and a sheet on the floor. */
-static struct world floor_and_light(bool sheet)
+/* A floor, a wall and a black light, of two triangles each, and a sheet on the floor;
+ * `below`: the floor is seen by a twin. */
+static struct world floor_and_light(bool sheet, bool below)
 {
     struct soup soup = {0};
     struct vec3 x = {2, 0, 0}, y = {0, 2, 0};
-    soup_add_quad(&soup, point(-1, -1, 0), x, y, 1);
+    soup_add_quad(&soup, point(-1, -1, 0), below ? y : x, below ? x : y, 1);
     soup_add_quad(&soup, point(-1, -1, 1), y, x, 1);
+    soup_add_quad(&soup, point(-1, -1, 0), y, point(0, 0, 1), 1);
     if (sheet)
         soup_add_quad(&soup, point(-0.7, -0.4, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.8, 0.0);
     paint(&soup, 0.0, 1.0);
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[2] = scene->material_of[3] = 1;
+    scene->two_sided = below;
     return world_make(scene);
 }
 
@@ -182,7 +185,7 @@ static void test_elements(const struct scene *scene, const struct truth *truth)
         inside =
             inside && fmin(w[0], fmin(w[1], w[2])) >= -1e-12; /* rounding times 4^2 */
     }
-    tap_ok(truth->count == 32, "2 of 4 roots reflect, 16 elements each: %lld",
+    tap_ok(truth->count == 64, "4 of 6 roots reflect, 16 elements each: %lld",
            (long long)truth->count);
     tap_ok(ordered, "elements are in the order of IDs");
     tap_ok(inside, "each has its point inside");
@@ -202,8 +205,9 @@ static void test_file(const struct scene *scene, const struct truth *truth)
     tap_ok(same, "a file gives back the truth written");
     truth_free(&copy);
     struct scene other = *scene;
-    double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2],
-                       2.0 * scene->areas[3]};
+    double areas[6];
+    for (int k = 0; k < 6; k++)
+        areas[k] = 2.0 * scene->areas[k];
     other.areas = areas;
     tap_ok(!truth_read(&copy, FILE_NAME, &other, &error) && error.code == EXIT_USAGE,
            "the reference of another scene is refused: %s", error.text);
@@ -213,9 +217,9 @@ static void test_file(const struct scene *scene, const struct truth *truth)
            "and so is none: %s", error.text);
 }
 
-/* Light paths and paths from the elements agree, also where a face lies on another. The
- * product of two halves whose noise is 1.2 %, over 32 elements, deviates by a sixth of
- * the square of 1 %. */
+/* Light paths and paths from the elements agree, also on twins and where a face lies on
+ * another. The product of two halves whose noise is 1.2 %, over 32 elements, deviates by
+ * a sixth of the square of 1 %. */
 static void test_means(const struct comm *comm, const struct world *world)
 {
     struct truth truth = truth_trace(comm, world->scene, world->octree, 64, 16384);
@@ -247,15 +251,19 @@ int main(int argc, char **argv)
     test_ends();
     test_noise();
     test_roots();
-    struct world world = floor_and_light(false), sheet = floor_and_light(true);
+    struct world world = floor_and_light(false, false),
+                 sheet = floor_and_light(true, false),
+                 below = floor_and_light(false, true);
     struct truth truth = truth_trace(&comm, world.scene, world.octree, 64, 64);
     test_elements(world.scene, &truth);
     test_file(world.scene, &truth);
     test_means(&comm, &world);
     test_means(&comm, &sheet);
+    test_means(&comm, &below);
     truth_free(&truth);
     world_free(&world);
     world_free(&sheet);
+    world_free(&below);
     comm_stop(&comm);
     return tap_done();
 }

@@ -1,4 +1,4 @@
-/* The path tracer and light paths against exact answers.
+/* The path tracer against exact answers. (Light paths: tests/whole/norms.c.)
  *
  * An estimate is random, so each is made RUNS times with other seeds; their mean is
  * compared with the exact answer. The tolerance is 5 standard deviations of the mean, as
@@ -21,13 +21,6 @@ struct outcome {
     double mean, sigma; /* of the mean */
 };
 
-/* Of the sum and the sum of squares of RUNS answers. */
-static struct outcome outcome_of(double sum, double squares)
-{
-    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
-    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
-}
-
 /* rho H over a part of a root; with a camera, B of the middle of its 3 x 3 pixels. */
 static struct outcome trace_by(const struct world *world, const struct camera *camera,
                                int32_t root, const struct triangle *part, int band,
@@ -44,7 +37,8 @@ static struct outcome trace_by(const struct world *world, const struct camera *c
         squares += b.band[band] * b.band[band];
     }
     pathtracer_free(&pathtracer);
-    return outcome_of(sum, squares);
+    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
+    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
 }
 
 static struct outcome trace(const struct world *world, int32_t root,
@@ -194,87 +188,6 @@ static void test_flush(void)
                  "under a light that its ceiling hides: rho H");
 }
 
-/* --- light paths, against exact answers and against the other way --- */
-
-enum { LIGHT_PATHS = 2 * SAMPLES };
-
-/* The light that arrives at the children of a root. */
-struct basin {
-    int32_t root;
-    int band;
-    double light[4];
-};
-
-static void fill_basin(void *listener, const struct landing *landing)
-{
-    struct basin *basin = listener;
-    double w[3] = {landing->weight[0], landing->weight[1], landing->weight[2]};
-    if (landing->root == basin->root)
-        basin->light[triangle_child_at(w)] += landing->light.band[basin->band];
-}
-
-/* rho H over the children of a root, by light paths. */
-static void shine(const struct world *world, int32_t root, int band,
-                  struct outcome child[4])
-{
-    struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
-    double area = 0.25 * scene_root_area(world->scene, root);
-    double sum[4] = {0.0}, squares[4] = {0.0};
-    double rho = scene_root_material(world->scene, root)->reflectance.band[band];
-    for (int run = 0; run < RUNS; run++) {
-        struct basin basin = {root, band, {0.0}};
-        for (int i = 0; i < LIGHT_PATHS; i++)
-            pathtracer_shine(&pathtracer, (uint64_t)(run * LIGHT_PATHS + i), fill_basin,
-                             &basin);
-        for (int k = 0; k < 4; k++) {
-            double share = basin.light[k] / LIGHT_PATHS;
-            double h = rho * pathtracer_power(&pathtracer) * share / area;
-            sum[k] += h;
-            squares[k] += h * h;
-        }
-    }
-    pathtracer_free(&pathtracer);
-    for (int k = 0; k < 4; k++)
-        child[k] = outcome_of(sum[k], squares[k]);
-}
-
-/* Both ways have the same answer on every child of a root. Where corners were mistaken
- * for one another, children would be, too. */
-static void expect_alike(const struct world *world, int32_t root, const char *what)
-{
-    struct outcome to[4];
-    shine(world, root, 0, to);
-    for (int k = 0; k < 4; k++) {
-        struct triangle part = triangle_child(&WHOLE, k);
-        struct outcome from = trace(world, root, &part, 0);
-        double sigma = sqrt(from.sigma * from.sigma + to[k].sigma * to[k].sigma);
-        tap_ok(fabs(from.mean - to[k].mean) <= 5.0 * sigma && sigma <= 0.02 * from.mean,
-               "%s, child %d: %.5f by paths, %.5f by light paths, deviation %.5f", what,
-               k, from.mean, to[k].mean, sigma);
-    }
-}
-
-static void test_light_paths(void)
-{
-    double seen;
-    struct outcome child[4];
-    struct soup soup = lamp(true, &seen);
-    struct world room = furnace(false), screened = world_make(scene_of_soup(&soup));
-    shine(&room, 3, 1, child);
-    expect(child[1], 8.0, 0.02, "light paths in the furnace, rho 0.8, E 2: rho H");
-    expect_alike(&screened, 0, "under a screened light");
-    world_free(&room);
-    world_free(&screened);
-    soup = lamp(false, &seen);
-    for (int i = 0; i < 2; i++)
-        soup.items[i] = reversed(soup.items[i]);
-    struct scene *scene = scene_of_soup(&soup);
-    scene->two_sided = true;
-    struct world turned = world_make(scene);
-    expect_alike(&turned, scene->input_count, "on a twin, the front of a floor below");
-    world_free(&turned);
-}
-
 int main(void)
 {
     test_furnace();
@@ -285,6 +198,5 @@ int main(void)
     test_direct();
     test_flush();
     test_turned();
-    test_light_paths();
     return tap_done();
 }
