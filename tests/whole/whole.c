@@ -223,7 +223,7 @@ static void test_strips(const struct shape *shape, double size, int length, bool
 
 /* --- furnaces, and light that is kept --- */
 
-enum room { CUBE, CORRIDOR, FURNISHED, HUNG, WEDGE, TOUCHING };
+enum room { CUBE, CORRIDOR, FURNISHED, HUNG, WEDGE, SLIVERS, TOUCHING };
 
 /* A prism: at the ends of its edge single points of a leaf miss the end that is near. */
 static void add_wedge(struct soup *soup)
@@ -267,6 +267,13 @@ static void add_room(struct soup *soup, enum room room)
         soup_add_box(soup, point(0.0005, 0.4, 0.4), point(0.005, 0.6, 0.6), 1, false);
     if (room == TOUCHING)
         add_touching(soup);
+    for (int i = 0; i < 5 && room == SLIVERS; i++) { /* to 1 : 1e6, each from both sides */
+        struct vec3 from = point(0.03 + 0.011 * i, 0.05 + 0.007 * i, 0.5);
+        struct vec3 to = point(0.93 + 0.003 * i, 0.96, 0.5 + 0.01 * i);
+        struct triangle t = {{from, to, vec3_add(to, point(0, 0, pow(10.0, -2 - i)))}};
+        soup_add(soup, t);
+        soup_add(soup, reversed(t));
+    }
 }
 
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
@@ -276,7 +283,8 @@ static void add_room(struct soup *soup, enum room room)
 static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room",
-                                        "room with a picture", "acute wedge"};
+                                        "room with a picture", "acute wedge",
+                                        "slivers"};
     const struct errors limit = {1e-6, 1e-6, room == WEDGE ? 3e-6 : 1e-6};
     char name[64];
     struct soup soup = {0};
@@ -497,6 +505,7 @@ int main(int argc, char **argv)
                  "--tolerance 1e-8 --epsilon 1e-3 --final-gather 64");
     test_furnace(WEDGE, 0.999, false,
                  "--tolerance 1e-8 --epsilon 1e-3 --final-gather 64");
+    test_furnace(SLIVERS, 0.99, false, "--tolerance 1e-8 --epsilon 1e-2");
     test_loose();
     test_touching(0.99);
     test_pierced();
