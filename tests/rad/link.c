@@ -168,35 +168,6 @@ static void test_one_transfer(void)
     world_free(&world);
 }
 
-/* Each link takes from its two patches and gives to them, to the last integer, in any
- * order. */
-static void test_transfer(void)
-{
-    struct world world = make_many();
-    struct forest *forest = world.model.forest;
-    struct flux_unit unit = world.model.flux_unit;
-    struct random random = random_seed(2);
-    struct link_list list = {0}, turned = {0};
-    double sent = 0.0;
-    for (int i = 0; i < LINKS; i++) {
-        struct link link = random_link(&random, forest);
-        link_list_append(&list, link);
-        sent += link_area(&link) * (rgb_sum(forest->radiosity[link.p]) +
-                                    rgb_sum(forest->radiosity[link.q]));
-    }
-    for (int64_t i = 0; i < list.count; i++)
-        link_list_append(&turned, list.items[list.count - 1 - i]);
-    links_transfer(&list, &world.model, forest->radiosity, unit);
-    check_received(forest, unit, 6, sent);
-    uint64_t hash = flux_hash(forest);
-    clear_flux(forest);
-    links_transfer(&turned, &world.model, forest->radiosity, unit);
-    tap_ok(flux_hash(forest) == hash, "bit by bit the same in another order of links");
-    link_list_free(&list);
-    link_list_free(&turned);
-    world_free(&world);
-}
-
 int main(void)
 {
     test_making();
@@ -205,6 +176,5 @@ int main(void)
     test_split();
     test_dropped_children();
     test_one_transfer();
-    test_transfer();
     return tap_done();
 }
