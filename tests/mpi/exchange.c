@@ -99,31 +99,6 @@ static void test_migration(const struct comm *comm)
 
 /* --- collectives --- */
 
-/* Rank r gives r % 3 * 5 bytes: some give none. */
-static void test_gather_all(const struct comm *comm)
-{
-    uint8_t own[10];
-    int bytes = comm->rank % 3 * 5, expected = 0;
-    for (int i = 0; i < bytes; i++)
-        own[i] = (uint8_t)(20 * comm->rank + i);
-    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
-    uint8_t *all = comm_gather_all(comm, own, bytes, at);
-    bool right = true;
-    for (int r = 0; r < comm->size; r++) {
-        right = right && at[r] == expected;
-        for (int i = 0; i < r % 3 * 5; i++)
-            right = right && all[expected + i] == (uint8_t)(20 * r + i);
-        expected += r % 3 * 5;
-    }
-    right = right && at[comm->size] == expected;
-    alloc_free(all);
-    all = comm_gather_all(comm, own, 0, at);
-    right = right && at[comm->size] == 0;
-    report(comm, right, "the bytes of all ranks in their order, also none at all");
-    alloc_free(all);
-    alloc_free(at);
-}
-
 static void test_sums(const struct comm *comm)
 {
     int size = comm->size;
@@ -329,7 +304,6 @@ int main(int argc, char **argv)
     struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
     comm_start(&comm, &argc, &argv);
     test_migration(&comm);
-    test_gather_all(&comm);
     test_sums(&comm);
     test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
