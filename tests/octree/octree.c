@@ -669,20 +669,6 @@ static void test_overlay(bool large_first)
     world_free(&world);
 }
 
-static void test_nothing(void)
-{
-    struct octree *octree = octree_create(NULL, NULL, 0);
-    struct octree_counts counts = {0};
-    struct octree_hit hit;
-    const int32_t own[2] = {-1, -1};
-    struct vec3 a = {0, 0, 0}, b = {1, 2, 3};
-    tap_ok(octree_blocker(octree, a, b, own, -1, &counts) == -1 &&
-               !octree_first_hit(octree, a, b, false, &hit, &counts) && counts.rays == 2,
-           "an octree of nothing answers");
-    octree_destroy(octree);
-    octree_destroy(NULL);
-}
-
 /* A floor, a decal in its plane that comes after it, and a lid above both. With the decal
  * turned over, a front is met before a back, whichever comes later. */
 static void test_layers(void)
@@ -728,7 +714,6 @@ static void test_layers(void)
 
 int main(void)
 {
-    test_nothing();
     test_layers();
     test_coincident();
     test_overlay(true);
