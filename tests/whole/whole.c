@@ -267,7 +267,7 @@ static void add_room(struct soup *soup, enum room room)
         soup_add_box(soup, point(0.0005, 0.4, 0.4), point(0.005, 0.6, 0.6), 1, false);
     if (room == TOUCHING)
         add_touching(soup);
-    for (int i = 0; i < 5 && room == SLIVERS; i++) { /* to 1 : 1e6, each from both sides */
+    for (int i = 0; i < 5 && room == SLIVERS; i++) { /* to 1 : 1e6, both sides */
         struct vec3 from = point(0.03 + 0.011 * i, 0.05 + 0.007 * i, 0.5);
         struct vec3 to = point(0.93 + 0.003 * i, 0.96, 0.5 + 0.01 * i);
         struct triangle t = {{from, to, vec3_add(to, point(0, 0, pow(10.0, -2 - i)))}};
