@@ -8,7 +8,7 @@
 # The function of the form factor of Eq. (2), with visibility; that which makes a row of
 # the final gather, and those that fire its rays and its segments to lamps.
 factor=exchange_area
-row=final_gather_add
+row=final_gather_add_row
 ray=octree_stream_hits
 segment=octree_blocks_segment
 

@@ -24,7 +24,7 @@ static inline struct trial gather_scene(struct soup *soup, const char *words, in
         g.radiosity[i] = forest->radiosity[g.gather->order[i]];
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
-        final_gather_add(g.gather, leaf, rays, rays, true);
+        final_gather_add_row(g.gather, leaf, rays, rays, true);
     return g;
 }
 

@@ -117,8 +117,8 @@ static void gathering_end(struct gathering *g)
 static void make_row(void *context, int64_t i)
 {
     struct gathering *g = context;
-    final_gather_add(g->gather, g->leaves[i], g->mesh->rays[i], g->mesh->segments[i],
-                     g->mesh->exact[i]);
+    final_gather_add_row(g->gather, g->leaves[i], g->mesh->rays[i], g->mesh->segments[i],
+                         g->mesh->exact[i]);
 }
 
 /* Collective. False if a signal on any rank has ended the work. */

@@ -5,8 +5,8 @@
  * are made once, then applied to any radiosities. A row depends on the scene, on the
  * trees and on the radiosities of the solution, and on nothing else: each rank would make
  * the same row. */
-#ifndef RAD_BEYOND_FINAL_GATHER_H
-#define RAD_BEYOND_FINAL_GATHER_H
+#ifndef RAD_BEYOND_GATHER_GATHER_H
+#define RAD_BEYOND_GATHER_GATHER_H
 
 #include "rad/beyond/gather/rows.h"
 
@@ -54,8 +54,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
  * and its root is open, by exact factors. */
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
-                      bool exact);
+void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
+                          int segments, bool exact);
 
 /* Returns the light at points, for the radiosities of the forest: by `count` segments to
  * lamps, and, if `all`, `count` rays for the rest. */

@@ -1,6 +1,6 @@
 /* Whether a ray begins inside of a thing: a solid with the backs of its faces inside. */
-#ifndef RAD_BEYOND_INSIDE_H
-#define RAD_BEYOND_INSIDE_H
+#ifndef RAD_BEYOND_GATHER_INSIDE_H
+#define RAD_BEYOND_GATHER_INSIDE_H
 
 #include "rad/model.h"
 

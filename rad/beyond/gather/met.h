@@ -1,7 +1,7 @@
 /* The points of surfaces met by rays of the final gather. For the files of the final
  * gather alone. */
-#ifndef RAD_BEYOND_MET_H
-#define RAD_BEYOND_MET_H
+#ifndef RAD_BEYOND_GATHER_MET_H
+#define RAD_BEYOND_GATHER_MET_H
 
 #include "rad/beyond/gather/receiver.h"
 

@@ -59,8 +59,8 @@ static struct rgb light_of_lamps(const struct receiver *r)
     return light;
 }
 
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
-                      bool exact)
+void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
+                          int segments, bool exact)
 {
     struct gather_row row = {.leaf = leaf};
     struct ray_sums sums = {.each = NULL};
