@@ -1,14 +1,13 @@
 /* Links: making, splitting, transferring.
  *
  * A form factor takes as long as 11 to 14 tests of 26 to 34 ns (build/mpi/prices, three
- * rooms) and counts as 12: this predicts the seconds of a level within 10 %, RMS, tests
- * alone within 30. Two are in link_cost(), as half of the parent's cost is in `cost`.
+ * rooms) and counts as 12: with these, tests predict the seconds of a level within 10 %,
+ * RMS; alone, within 30 %. A link inherits half of its parent's cost, a quarter of its
+ * grandparent's, and so on: of two form factors in all, which link_cost() adds.
  *
- * A child inherits the last blocker, which is tested first; a child with a link hands its
- * own on to the next.
- *
- * Where no ray arrives there is no link: one without energy would never be split, nor
- * carry light. */
+ * A form factor tests the last blocker first: of the parent, or of the sister linked
+ * before. A pair of which no ray arrives gets no link: without energy it would never be
+ * split, nor carry light. */
 #include "rad/link.h"
 
 #include "geom/alloc.h"

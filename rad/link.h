@@ -22,13 +22,13 @@ struct link {
                             cluster: see rad/beyond/node_link.c */
     uint8_t parts_p[3], parts_q[3]; /* see rad/beyond/patch_link.h */
     uint8_t seen;        /* arriving share of the segments' weight, in 252nds; 0 only if
-                            none arrives; or a proof, see below */
+                            none arrives; or LINK_OPEN, LINK_OPEN_NEAR: proved */
     uint8_t cost;        /* box and triangle tests of its form factor, and alpha of its
                             parent's, >= 1; short form of rad/compact.h */
 };
 
-/* Values of `seen`: all segments arrive; or are proved to, p and q being too near for
- * their size to trust the form factor from points, or far enough apart. */
+/* Values of `seen`: all segments arrive; they are proved to, p and q being too near for
+ * their size to trust the form factor from points; the same, far enough apart. */
 enum { LINK_ALL_SEEN = 252, LINK_OPEN_NEAR = 253, LINK_OPEN = 254 };
 
 static inline bool link_is_open(const struct link *link)
@@ -60,11 +60,11 @@ void link_list_sort(struct link_list *list);
 void link_list_append(struct link_list *list, struct link link);
 void link_list_free(struct link_list *list);
 
-/* See struct method, whose entries of the paper these are. */
+/* The link kernel of the paper: see struct method, in rad/method.h. */
 bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, const struct link *parent, struct link *link);
 
-/* The field `cost` of a link (Sec. 3.3.1). `parent` as above. */
+/* Returns the field `cost` of a link (Sec. 3.3.1). `parent`: the split link, or NULL. */
 double link_predict_cost(const struct model *model, const struct octree_counts *work,
                          const struct link *parent);
 
