@@ -49,38 +49,6 @@ static void test_hole(void)
            worst);
 }
 
-/* Of random triangles that a horizon cuts the part above it is left, with all of the
- * factor, which counts nothing below. */
-static void test_horizon(void)
-{
-    struct random random = random_seed(5);
-    double lowest = 0.0, worst = 0.0;
-    int none = 0, some = 0;
-    for (int trial = 0; trial < 1000; trial++) {
-        struct triangle t = random_triangle(&random, 1.0, 1.0);
-        struct vec3 x = point(random_between(&random, -2, 2),
-                              random_between(&random, -2, 2),
-                              random_between(&random, -1, 1));
-        struct outlook outlook;
-        outlook_start(&outlook, x, &t);
-        outlook_keep_above(&outlook, UP);
-        double all = point_triangle_factor(x, UP, &t), left = 0.0;
-        for (int i = 0; i < outlook.count; i++) {
-            const struct outlook_piece *piece = &outlook.piece[i];
-            left += point_polygon_factor(x, UP, piece->corner, piece->count);
-            for (int k = 0; k < piece->count; k++)
-                lowest = fmin(lowest, piece->corner[k].z - x.z);
-        }
-        if (all > 0.0)
-            worst = fmax(worst, fabs(left - all));
-        none += outlook.count == 0;
-        some += all > 0.0 && outlook.piece[0].count == 4;
-    }
-    tap_ok(lowest > -1e-12 && worst < 1e-12 && none > 50 && some > 50,
-           "above a horizon: %.1e below, factors within %.1e, %d hidden, %d quadrangles",
-           lowest, worst, none, some);
-}
-
 /* Barycentric coordinates tell if a point of the lamp's plane is in a piece. */
 static bool is_left(const struct outlook *outlook, struct vec3 y)
 {
@@ -141,7 +109,6 @@ static void test_random(int blockers, bool exact)
 int main(void)
 {
     test_hole();
-    test_horizon();
     test_random(1, true);
     test_random(3, true);
     test_random(40, false);

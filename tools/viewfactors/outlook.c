@@ -48,16 +48,6 @@ static void split_piece(const struct outlook_piece *piece, struct vec3 from,
     }
 }
 
-void outlook_keep_above(struct outlook *outlook, struct vec3 normal)
-{
-    for (int i = outlook->count - 1; i >= 0; i--) {
-        struct outlook_piece piece = outlook->piece[i], below;
-        split_piece(&piece, outlook->from, normal, &outlook->piece[i], &below);
-        if (outlook->piece[i].count == 0)
-            outlook->piece[i] = outlook->piece[--outlook->count];
-    }
-}
-
 /* True if a piece lies outside of one of the planes: no part is hidden. */
 static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
                        const struct vec3 normal[3])

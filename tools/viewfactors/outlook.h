@@ -24,10 +24,6 @@ struct outlook {
 /* All of the triangle is seen. */
 void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t);
 
-/* Takes away the part below the plane through the point with this normal; to be called
- * before any part is hidden. */
-void outlook_keep_above(struct outlook *outlook, struct vec3 normal);
-
 /* Takes away the part hidden behind another triangle, which has to lie in front of the
  * first one's plane, as the point does. Leaves a piece whole where pieces or corners
  * would be too many, and returns false then. */
