@@ -47,11 +47,8 @@ static const char *name_node(const struct links_printer *printer, int32_t node,
                              char text[LABEL_SIZE])
 {
     const struct model *model = printer->model;
-    if (!node_is_cluster(node))
-        return label_write(model->forest->patches[printer->order[node]].id, text);
-    struct patch_id id = {CLUSTER_ROOT,
-                          model->clusters->tree->clusters[~node].hierarchy};
-    return label_write(id, text);
+    int32_t local = node_is_cluster(node) ? node : printer->order[node];
+    return label_write(model->method.node_id(model, local), text);
 }
 
 static void print_parts(const uint8_t parts[3])
