@@ -5,7 +5,7 @@
 
 page=docs/README.md
 mkdir -p "$work/io/picture" "$work/io/run"
-cp io/run/options.[ch] "$work/io/run"
+cp io/run/target.[ch] "$work/io/run"
 cp io/picture/imagefile.c "$work/io/picture"
 
 # block LANGUAGE N: the N-th block of the page in this language.
@@ -30,7 +30,7 @@ check "and changes three files that are as it says" [ $? -eq 0 -a ! -s "$work/pa
 link=$MPICC
 ./phr --version | grep -q serial && link=$CC
 objects=
-for file in io/picture/tga io/picture/imagefile io/run/options; do
+for file in io/picture/tga io/picture/imagefile io/run/target; do
     $CC -std=c99 -ffp-contract=off -pedantic -Wall -Wextra -Wshadow -Wconversion \
         -Werror -I"$work" -I. -c -o "$work/$file.o" "$work/$file.c" 2>>"$work/log"
     objects="$objects $work/$file.o"

@@ -7,7 +7,7 @@
 #include "geom/error.h"
 #include "io/picture/image.h"
 #include "io/picture/tone.h"
-#include "io/run/options.h"
+#include "io/run/target.h"
 #include "io/scene/binary.h"
 
 /* Writes the format of the target: PFM and HDR, linear; or PPM and PNG, the 8-bit codes

@@ -7,7 +7,6 @@
 
 #include <ctype.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,57 +36,6 @@ struct argument {
     struct error *error;
 };
 
-/* A format of outputs: its name is a prefix and a suffix, too. */
-struct format {
-    const char *name;
-    bool is_mesh, has_tone;
-};
-
-static const struct format FORMATS[] = {
-    [FORMAT_PPM] = {"ppm", false, true},
-    [FORMAT_PFM] = {"pfm", false, false},
-    [FORMAT_PNG] = {"png", false, true},
-    [FORMAT_HDR] = {"hdr", false, false},
-    [FORMAT_PLY] = {"ply", true, true},
-    [FORMAT_VTK] = {"vtk", true, false},
-};
-enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
-
-bool format_is_mesh(enum output_format format)
-{
-    return FORMATS[format].is_mesh;
-}
-
-bool format_has_tone(enum output_format format)
-{
-    return FORMATS[format].has_tone;
-}
-
-/* Returns the length of "FORMAT:" at the start of an argument, or 0. */
-static size_t prefix_length(const char *argument, const char *format)
-{
-    size_t i = 0;
-    while (format[i] && tolower((unsigned char)argument[i]) == format[i])
-        i++;
-    return !format[i] && argument[i] == ':' ? i + 1 : 0;
-}
-
-struct target target_parse(const char *argument)
-{
-    char suffix[16];
-    for (int i = 0; i < FORMAT_COUNT; i++) {
-        size_t prefix = prefix_length(argument, FORMATS[i].name);
-        if (prefix > 0)
-            return (struct target){argument + prefix, (enum output_format)i, true, 0};
-    }
-    for (int i = 0; i < FORMAT_COUNT; i++) {
-        snprintf(suffix, sizeof suffix, ".%s", FORMATS[i].name);
-        if (text_ends_with(argument, suffix))
-            return (struct target){argument, (enum output_format)i, true, 0};
-    }
-    return (struct target){argument, FORMAT_PPM, false, 0};
-}
-
 bool options_show(const struct options *options, int view)
 {
     for (int i = 0; i < options->output_count; i++)
@@ -95,19 +43,6 @@ bool options_show(const struct options *options, int view)
             !format_is_mesh(options->outputs[i].format))
             return true;
     return false;
-}
-
-bool target_refuse(const char *argument, struct error *error)
-{
-    char list[200] = "";
-    for (int i = 0, at = 0; i < FORMAT_COUNT; i++)
-        at += snprintf(list + at, sizeof list - (size_t)at, "%s.%s",
-                       i == 0                  ? ""
-                       : i == FORMAT_COUNT - 1 ? " or "
-                                               : ", ",
-                       FORMATS[i].name);
-    return error_set(error, EXIT_USAGE, "-o %s: the name must end in %s, or be "
-                     "FORMAT:FILE, as in ppm:FILE", argument, list);
 }
 
 /* --- values --- */
@@ -173,14 +108,12 @@ static bool set_size(const struct argument *a)
 {
     int64_t width, height;
     const char *at = a->value;
-    if (text_integer(&at, &width) && (*at == 'x' || *at == 'X')) {
-        at++;
-        if (text_integer(&at, &height) && *at == '\0' && width >= 1 &&
-            width <= IMAGE_SIZE_MAX && height >= 1 && height <= IMAGE_SIZE_MAX) {
-            a->options->width = (int)width;
-            a->options->height = (int)height;
-            return true;
-        }
+    if (text_integer(&at, &width) && tolower((unsigned char)*at++) == 'x' &&
+        text_integer(&at, &height) && *at == '\0' && width >= 1 &&
+        width <= IMAGE_SIZE_MAX && height >= 1 && height <= IMAGE_SIZE_MAX) {
+        a->options->width = (int)width;
+        a->options->height = (int)height;
+        return true;
     }
     char kind[60];
     snprintf(kind, sizeof kind, "WIDTHxHEIGHT, each from 1 to %d", (int)IMAGE_SIZE_MAX);
@@ -204,15 +137,13 @@ static bool set_choice(const struct argument *a)
     return is_not(a, kind);
 }
 
-/* Copies the value without its last characters. False if there is no room. */
-static bool cut_value(const struct argument *a, size_t ending, char digits[64])
+enum { DIGITS_ROOM = 64 };
+
+/* Copies the first characters of a text. False if there is no room. */
+static bool copy_digits(const char *text, size_t length, char digits[DIGITS_ROOM])
 {
-    size_t length = strlen(a->value) - ending;
-    if (length >= 64)
-        return false;
-    memcpy(digits, a->value, length);
-    digits[length] = '\0';
-    return true;
+    snprintf(digits, DIGITS_ROOM, "%.*s", (int)length, text);
+    return length < DIGITS_ROOM;
 }
 
 /* Sets a colour: a number for all bands, or R,G,B. */
@@ -222,10 +153,10 @@ static bool set_colour(const struct argument *a)
     const char *at = a->value;
     bool alone = !strchr(at, ',');
     for (int c = 0; c < BANDS; c++) {
-        char digits[64];
+        char digits[DIGITS_ROOM];
         size_t length = strcspn(at, ",");
-        snprintf(digits, sizeof digits, "%.*s", (int)length, at);
-        if (length >= sizeof digits || !text_is_number(digits, &colour->band[c]) ||
+        if (!copy_digits(at, length, digits) ||
+            !text_is_number(digits, &colour->band[c]) ||
             (at[length] == ',') == (alone || c == BANDS - 1))
             return is_not(a, "a number, or three as in R,G,B");
         if (!check_range(a, colour->band[c], 1.0, "", ""))
@@ -238,10 +169,11 @@ static bool set_colour(const struct argument *a)
 /* Sets a fraction: a number, or a percentage. Of 5, 5% may be meant. */
 static bool set_fraction(const struct argument *a)
 {
-    char digits[64];
+    char digits[DIGITS_ROOM];
     double *field = a->field;
     size_t length = strlen(a->value);
-    bool percents = length >= 2 && a->value[length - 1] == '%' && cut_value(a, 1, digits);
+    bool percents = length >= 2 && a->value[length - 1] == '%' &&
+                    copy_digits(a->value, length - 1, digits);
     if (!text_is_number(percents ? digits : a->value, field))
         return is_not(a, "a number");
     if (!percents)
@@ -273,20 +205,18 @@ static bool set_bytes(const struct argument *a)
  * default, whatever was given before. */
 static bool set_gather(const struct argument *a)
 {
-    static const char PIXELS[] = "pixels";
     struct argument rays = *a;
-    char number[64];
-    size_t length = strlen(a->value), ending = sizeof PIXELS - 1;
-    a->options->pixels =
-        length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
+    char number[DIGITS_ROOM];
+    const char *comma = strrchr(a->value, ',');
+    a->options->pixels = strcmp(comma ? comma + 1 : a->value, "pixels") == 0;
     if (!a->options->pixels && !strpbrk(a->value, ",p"))
         return set_integer(a);
-    if (a->options->pixels && length == ending) {
+    if (a->options->pixels && !comma) {
         *(int *)a->field = NOT_GIVEN;
         return true;
     }
-    if (!a->options->pixels || a->value[length - ending - 1] != ',' ||
-        !cut_value(a, ending + 1, number))
+    if (!a->options->pixels ||
+        !copy_digits(a->value, (size_t)(comma - a->value), number))
         return is_not(a, "N, pixels or N,pixels");
     rays.value = number;
     return set_integer(&rays);

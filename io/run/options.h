@@ -6,23 +6,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "geom/error.h"
+#include "io/run/target.h"
 #include "rad/model.h"
 
 #define PHR_VERSION "0.3"
 #define PHR_FORMAT 1 /* of --stats and of notes in outputs; a change breaks readers */
-
-/* Formats of outputs, in the order of the table in io/run/options.c. */
-enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
-                     FORMAT_VTK };
-
-/* An output of -o. */
-struct target {
-    const char *path;         /* borrowed */
-    enum output_format format;
-    bool has_format;          /* false: a device or pipe, which gets a picture (PPM) */
-    int view;                 /* of a picture, 0 if there is no view */
-};
 
 /* The contents of pictures, in the order of --show. */
 enum show { SHOW_LIGHT, SHOW_MESH, SHOW_OWNER, SHOW_LEVEL, SHOW_ERROR, SHOW_LINKS };
@@ -82,18 +70,6 @@ const char *options_run_settings(const struct options *options);
 
 /* Returns the settings of light other than the defaults, as above. */
 const char *options_light_settings(const struct options *options);
-
-/* True if the format is a mesh, false for a picture. */
-bool format_is_mesh(enum output_format format);
-
-/* True if its colours are 8-bit codes, which --exposure changes. */
-bool format_has_tone(enum output_format format);
-
-/* Reads FORMAT:FILE, or a file whose suffix may be a format; its view is 0. */
-struct target target_parse(const char *argument);
-
-/* Refuses an output without a format. */
-bool target_refuse(const char *argument, struct error *error);
 
 /* True if a picture of the view is asked for; without --view, view 0 is the automatic
  * one. */
