@@ -1,10 +1,30 @@
-/* Scenes that tests and benches read from OBJ files. */
+/* Scenes that tests and benches read from files. */
 #ifndef TESTS_READING_H
 #define TESTS_READING_H
 
 #include "io/picture/texture.h"
 #include "io/scene/obj.h"
+#include "io/scene/ply.h"
 #include "mpi/broadcast.h"
+
+static inline struct scene *obj_read(const char *path, struct obj_repairs *repairs,
+                                     struct error *error)
+{
+    struct source source;
+    struct scene *scene = source_open(&source, path, error)
+                              ? obj_of_source(&source, repairs, error) : NULL;
+    source_close(&source);
+    return scene;
+}
+
+static inline struct scene *ply_read(struct source *source, struct error *error)
+{
+    struct ply_file file;
+    struct scene *scene =
+        ply_file_open(&file, source, error) ? ply_of_file(&file, error) : NULL;
+    ply_file_close(&file);
+    return scene;
+}
 
 /* A file, and what is asked of its scene. */
 struct reading {

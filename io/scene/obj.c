@@ -519,12 +519,3 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
     text_names_free(&reader.groups);
     return scene;
 }
-
-struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
-{
-    struct source source;
-    struct scene *scene = source_open(&source, path, error)
-                              ? obj_of_source(&source, repairs, error) : NULL;
-    source_close(&source);
-    return scene;
-}

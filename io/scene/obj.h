@@ -37,16 +37,12 @@ struct obj_repairs {
     long first_unknown;            /* number of the first such line */
 };
 
-/* Reads `path` and the material libraries of its mtllib lines (relative to `path`).
- * Returns a scene before scene_prepare() (positions in input units), or NULL with `error`
- * set to "FILE:LINE: REASON" (EXIT_USAGE).
+/* Reads an open file, which stays open, and the material libraries of its mtllib lines
+ * (relative to its path). Returns a scene before scene_prepare() (positions in input
+ * units), or NULL with `error` set to "FILE:LINE: REASON" (EXIT_USAGE).
  * Errors: a file that cannot be read or has no faces (or seems to be of another format);
  * malformed numbers, NaN and infinities, indices out of range, faces with fewer than
  * three corners, negative reflectance or emission. */
-struct scene *obj_read(const char *path, struct obj_repairs *repairs,
-                       struct error *error);
-
-/* Does the same with an open file, which stays open. */
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error);
 

@@ -295,15 +295,6 @@ struct scene *ply_of_file(struct ply_file *file, struct error *error)
     return scene;
 }
 
-struct scene *ply_read(struct source *source, struct error *error)
-{
-    struct ply_file file;
-    struct scene *scene =
-        ply_file_open(&file, source, error) ? ply_of_file(&file, error) : NULL;
-    ply_file_close(&file);
-    return scene;
-}
-
 bool ply_is_meant(const struct source *source)
 {
     const char *path = source->path, *start = source->start;

@@ -21,15 +21,12 @@
  * end in .obj, and the file begins as a PLY file does. */
 bool ply_is_meant(const struct source *source);
 
-/* Reads an open file. Returns a scene before scene_prepare() (positions in input units),
- * of one group, with one material for each different pair of reflectance and emission; or
- * NULL with `error` set (EXIT_USAGE): "FILE:LINE: REASON" for text and headers, else
- * "FILE: face 3: REASON", counted from 0.
+/* Reads a file whose header is read, and which stays open. Returns a scene before
+ * scene_prepare() (positions in input units), of one group, with one material for each
+ * different pair of reflectance and emission; or NULL with `error` set (EXIT_USAGE):
+ * "FILE:LINE: REASON" in text, else "FILE: face 3: REASON", counted from 0.
  * Errors: those of io/scene/plyfile.h; no x y z, no faces, a face with fewer than three
  * corners, a corner out of range, a negative colour or emission. */
-struct scene *ply_read(struct source *source, struct error *error);
-
-/* Does the same with a file whose header is read, which stays open. */
 struct scene *ply_of_file(struct ply_file *file, struct error *error);
 
 #endif

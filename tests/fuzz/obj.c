@@ -1,10 +1,8 @@
 /* Fuzzing scenes known by their first bytes, OBJ mostly: reading, and the preparation of
  * the scene. */
-#include "io/scene/obj.h"
-#include "io/scene/ply.h"
-
 #include "tests/fuzz/fuzz.h"
 #include "tests/memory.h"
+#include "tests/reading.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

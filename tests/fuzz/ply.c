@@ -4,6 +4,7 @@
 
 #include "tests/fuzz/fuzz.h"
 #include "tests/memory.h"
+#include "tests/reading.h"
 #include "tools/compare.h"
 #include "tools/results.h"
 #include "tools/stored.h"

@@ -9,6 +9,7 @@
 #include "geom/alloc.h"
 #include "io/scene/text.h"
 #include "tests/load.h"
+#include "tests/reading.h"
 #include "tests/refusal.h"
 #include "tests/scenes.h"
 

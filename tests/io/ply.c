@@ -9,6 +9,7 @@
 #include "io/scene/palette.h"
 #include "tests/load.h"
 #include "tests/memory.h"
+#include "tests/reading.h"
 #include "tests/refusal.h"
 #include "tests/scenes.h"
 

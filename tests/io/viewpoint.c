@@ -6,8 +6,8 @@
 
 #include <stdio.h>
 
-#include "io/scene/obj.h"
 #include "io/scene/sky.h"
+#include "tests/reading.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
