@@ -267,10 +267,8 @@ static void write_leaves(struct tracing *tracing, const float *halves, const cha
             colours[i * BANDS + (size_t)c] = (float)map[i].band[c];
         }
     }
-    double exposure = run->options.exposure;
-    if (!(exposure > 0.0))
-        exposure = tone_automatic(colours, (int64_t)count);
-    solution_write(&tracing->solution, map, 1.0 / exposure, path, &run->error);
+    struct tone tone = tone_choose(run->options.exposure, colours, (int64_t)count);
+    solution_write(&tracing->solution, map, 1.0 / tone.exposure, path, &run->error);
     alloc_free(colours);
     alloc_free(map);
 }
@@ -280,10 +278,8 @@ static void write_picture(struct tracing *tracing, float *picture,
 {
     struct run *run = tracing->run;
     struct image image = {run->cameras->width, run->cameras->height, picture};
-    double exposure = run->options.exposure;
-    if (!(exposure > 0.0))
-        exposure = tone_automatic(picture, (int64_t)image.width * image.height);
-    struct tone tone = tone_make(exposure);
+    struct tone tone = tone_choose(run->options.exposure, picture,
+                                   (int64_t)image.width * image.height);
     image_write(&image, &tone, target, &run->error);
 }
 

@@ -14,20 +14,14 @@
 #include "rad/pushpull.h"
 #include "tools/show.h"
 
-/* Returns the tone of 8-bit colours: --exposure, or chosen from `count` pixels. */
-static struct tone choose_tone(const struct run *run, const float *rgb, int64_t count)
-{
-    double exposure = run->options.exposure;
-    return tone_make(exposure > 0.0 ? exposure : tone_automatic(rgb, count));
-}
-
 /* Writes the pictures of a view. On rank 0 alone. */
 static void write_pictures(struct run *run, int view, float *picture)
 {
     const struct options *options = &run->options;
     const struct camera *camera = &run->cameras[view];
     struct image image = {camera->width, camera->height, picture};
-    struct tone tone = choose_tone(run, picture, (int64_t)camera->width * camera->height);
+    struct tone tone = tone_choose(options->exposure, picture,
+                                   (int64_t)camera->width * camera->height);
     for (int i = 0; i < options->output_count; i++) {
         const struct target *target = &options->outputs[i];
         struct error error = {.code = EXIT_DONE};
@@ -42,7 +36,7 @@ static void write_meshes(struct run *run, const struct shading *shading)
 {
     int64_t count;
     float *colours = mesh_colours(run->solver->model.forest, &count);
-    struct tone tone = choose_tone(run, colours, count);
+    struct tone tone = tone_choose(run->options.exposure, colours, count);
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         answer->error, answer->straight, answer->outside,

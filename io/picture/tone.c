@@ -88,3 +88,8 @@ double tone_automatic(const float *rgb, int64_t count)
     alloc_free(brightest);
     return exposure;
 }
+
+struct tone tone_choose(double exposure, const float *rgb, int64_t count)
+{
+    return tone_make(exposure > 0.0 ? exposure : tone_automatic(rgb, count));
+}

@@ -24,4 +24,7 @@ double tone_decode(double code);
  * percentile. 1 if all pixels are black. */
 double tone_automatic(const float *rgb, int64_t count);
 
+/* Returns the curve with an exposure, or, if that is 0, with the one for these pixels. */
+struct tone tone_choose(double exposure, const float *rgb, int64_t count);
+
 #endif
