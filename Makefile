@@ -82,7 +82,8 @@ MPI_INCLUDE = -Impi/serial
 MPIEXEC = sh tests/alone.sh
 else
 BUILD ?= build/mpi
-COMPILE = $(MPICC)
+COMPILE = $(or $(if $(shell command -v $(firstword $(MPICC)) 2>/dev/null),$(MPICC)), \
+    $(error no $(MPICC): install an MPI, or build without: make SERIAL=1))
 MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
