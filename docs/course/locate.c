@@ -2,38 +2,15 @@
  *
  *     locate X Y LEVEL
  *
- * The root is the triangle (0, 0), (1, 0), (0, 1). At each level the child is found that
- * has the point, and its number is appended to the ID (rad/id.h). Then the same path is
- * read back from the ID alone, and its corners are computed from the root. */
+ * The root is the triangle (0, 0), (1, 0), (0, 1). At each level the child that has the
+ * point is found by barycentric coordinates (geom/triangle.h), and its number is appended
+ * to the ID (rad/id.h). Then the same path is read back from the ID alone, and its
+ * corners are computed from the root. */
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "geom/triangle.h"
 #include "rad/id.h"
-
-/* Twice the area of the triangle a, b, c in the plane z = 0; below 0 if clockwise. */
-static double twice_area(struct vec3 a, struct vec3 b, struct vec3 c)
-{
-    return vec3_cross(vec3_sub(b, a), vec3_sub(c, a)).z;
-}
-
-static bool contains(const struct triangle *t, struct vec3 x)
-{
-    const struct vec3 *v = t->corner;
-    return twice_area(v[0], v[1], x) >= 0.0 && twice_area(v[1], v[2], x) >= 0.0 &&
-           twice_area(v[2], v[0], x) >= 0.0;
-}
-
-/* The number of a child that has the point, 0..3. */
-static int child_at(const struct triangle *t, struct vec3 x)
-{
-    for (int k = 0; k < 3; k++) {
-        struct triangle child = triangle_child(t, k);
-        if (contains(&child, x))
-            return k;
-    }
-    return 3;
-}
 
 /* The hierarchy part as a number and, without leading zeros, as bits: the sentinel, then
  * two for each step. */
@@ -54,16 +31,15 @@ int main(int argc, char **argv)
     const struct triangle root = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     struct vec3 x = {atof(argv[1]), atof(argv[2]), 0.0};
     struct patch_id id = id_of_root(0);
-    struct triangle t = root;
+    double weights[3];
+    triangle_weights(&root, x, weights);
     printf("level hierarchy  bits\n");
     print_id(id);
     while (id_level(id) < atoi(argv[3])) {
-        int child = child_at(&t, x);
-        id = id_child(id, child);
-        t = triangle_child(&t, child);
+        id = id_child(id, triangle_child_at(weights));
         print_id(id);
     }
-    t = root;
+    struct triangle t = root;
     for (int step = 0; step < id_level(id); step++)
         t = triangle_child(&t, id_step(id, step));
     printf("corners");
