@@ -20,20 +20,20 @@ struct dome {
 };
 
 /* Adds the facets of a triangle of directions, which is seen from within. */
-static void add_part(struct dome *builder, struct triangle part, int levels)
+static void add_part(struct dome *dome, struct triangle part, int levels)
 {
     for (int k = 0; k < 3; k++)
         part.corner[k] = vec3_unit(part.corner[k]);
     if (levels > 0) {
         for (int k = 0; k < 4; k++)
-            add_part(builder, triangle_child(&part, k), levels - 1);
+            add_part(dome, triangle_child(&part, k), levels - 1);
         return;
     }
-    struct triangle *facet = &builder->scene->triangles[builder->next];
+    struct triangle *facet = &dome->scene->triangles[dome->next];
     for (int k = 0; k < 3; k++)
-        facet->corner[k] = vec3_add(builder->centre,
-                                    vec3_scale(part.corner[k], builder->radius));
-    builder->scene->material_of[builder->next++] = builder->scene->material_count - 1;
+        facet->corner[k] = vec3_add(dome->centre,
+                                    vec3_scale(part.corner[k], dome->radius));
+    dome->scene->material_of[dome->next++] = dome->scene->material_count - 1;
 }
 
 void sky_add(struct scene *scene, struct rgb radiosity)
@@ -44,15 +44,15 @@ void sky_add(struct scene *scene, struct rgb radiosity)
         low = vec3_least(low, triangle_low(&scene->triangles[i]));
         high = vec3_most(high, triangle_high(&scene->triangles[i]));
     }
-    struct dome builder = {scene, vec3_middle(low, high),
-                              0.5 * DISTANCE * vec3_length(vec3_sub(high, low)),
-                              scene->input_count};
-    *(z_up ? &builder.centre.z : &builder.centre.y) = z_up ? low.z : low.y;
+    struct dome dome = {scene, vec3_middle(low, high),
+                        0.5 * DISTANCE * vec3_length(vec3_sub(high, low)),
+                        scene->input_count};
+    *(z_up ? &dome.centre.z : &dome.centre.y) = z_up ? low.z : low.y;
     scene_add_sky(scene, FACETS, (struct material){.emission = radiosity});
     struct vec3 up = z_up ? (struct vec3){0, 0, 1} : (struct vec3){0, 1, 0};
     struct vec3 side = {1, 0, 0}, other = vec3_cross(up, side);
     for (int k = 0; k < 4; k++) {
-        add_part(&builder, (struct triangle){{up, other, side}}, LEVELS);
+        add_part(&dome, (struct triangle){{up, other, side}}, LEVELS);
         struct vec3 before = side;
         side = other;
         other = vec3_scale(before, -1.0);
