@@ -6,7 +6,6 @@
 #include <stdint.h>
 
 #include "geom/error.h"
-#include "geom/triangle.h"
 #include "io/picture/image.h"
 #include "io/picture/solution.h"
 

@@ -23,9 +23,7 @@
 #include "geom/polygon.h"
 #include "geom/stop.h"
 #include "io/scene/library.h"
-#include "io/scene/mtl.h"
 #include "io/scene/palette.h"
-#include "io/scene/text.h"
 
 enum {
     COUNT_MAX = (1 << 30) - 1, /* vertices; triangles: with twins in an int32_t */

@@ -16,7 +16,6 @@
 #include "geom/polygon.h"
 #include "geom/stop.h"
 #include "io/scene/palette.h"
-#include "io/scene/plyfile.h"
 #include "io/scene/text.h"
 
 enum {

@@ -19,7 +19,6 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "io/scene/text.h"
 
 static const struct {
     const char *name, *other;
