@@ -30,7 +30,7 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
 
 /* Gives a leaf its new radiosity, and adds its share to the sums. */
 static void update_leaf(const struct model *model, struct flux_unit flux, int32_t leaf,
-                           struct push_pull_sums *sums)
+                        struct push_pull_sums *sums)
 {
     struct rgb *radiosity = &model->forest->radiosity[leaf];
     const struct material *material = forest_material(model->forest, leaf);
@@ -92,7 +92,7 @@ struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux
 }
 
 struct row_sums row_sums_measure(const struct forest *forest, const bool *own,
-                                    struct flux_unit unit)
+                                 struct flux_unit unit)
 {
     struct row_sums sums = {.min = HUGE_VAL, .max = -HUGE_VAL};
     struct flux_unit coarse = {unit.per_watt / ROW_SUMS_ROOM, unit.watt * ROW_SUMS_ROOM};

@@ -84,7 +84,7 @@ static double block_mean(const struct block *block, const struct image *image, i
 }
 
 static bool block_is_brighter(const struct block *block, const struct image *image,
-                               double most)
+                              double most)
 {
     for (int y = block->first_y; y < block->end_y; y++)
         for (int x = block->first_x; x < block->end_x; x++)
@@ -95,7 +95,7 @@ static bool block_is_brighter(const struct block *block, const struct image *ima
 }
 
 static void block_fill(const struct block *block, const struct image *map, int band,
-                        float value)
+                       float value)
 {
     for (int y = block->first_y; y < block->end_y; y++)
         for (int x = block->first_x; x < block->end_x; x++)
@@ -141,7 +141,7 @@ bool compare_solutions(const struct solution_mesh *a, const struct solution_mesh
         double fraction = (double)(end - start) / (double)(left->end - left->start);
         for (int c = 0; c < BANDS; c++)
             map[i].band[c] += fraction * add_sample(difference, left->radiosity.band[c],
-                                                 right->radiosity.band[c], area);
+                                                    right->radiosity.band[c], area);
         i += left->end == end;
         j += right->end == end;
     }

@@ -97,7 +97,7 @@ static bool is_lit(const struct site *site, int32_t root)
 static struct vec3 lift(const struct site *site, double right, double front, double up)
 {
     return site->subject.z_up ? (struct vec3){right, -front, up}
-                      : (struct vec3){right, up, front};
+                              : (struct vec3){right, up, front};
 }
 
 /* Returns one of AZIMUTHS level directions, with a slope. Directions are even within 2
@@ -122,8 +122,8 @@ static struct vec3 grid_point(const struct subject *subject, int cell)
 {
     struct vec3 side = vec3_scale(vec3_sub(subject->high, subject->low), 1.0 / GRID);
     return vec3_add(subject->low, (struct vec3){(cell % GRID + 0.5) * side.x,
-                                              (cell / GRID % GRID + 0.5) * side.y,
-                                              (cell / (GRID * GRID) + 0.5) * side.z});
+                                                (cell / GRID % GRID + 0.5) * side.y,
+                                                (cell / (GRID * GRID) + 0.5) * side.z});
 }
 
 /* True if the point is free. Adds the rays from a free point to `*rays`, and the rays

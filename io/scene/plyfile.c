@@ -82,7 +82,7 @@ static char *next_line(struct ply_file *file)
 }
 
 static bool fail_word(const struct ply_file *file, struct error *error, const char *what,
-                        const char *word)
+                      const char *word)
 {
     return error_set(error, EXIT_USAGE, "%s:%ld: %s '%.40s'", file->binary.path,
                      file->line, what, word ? word : "");

@@ -52,7 +52,7 @@ struct ply_element {
     int64_t count;         /* records, as the header claims */
     int64_t property;      /* number of its first property */
     int64_t property_count;
-    int64_t record_size;      /* smallest size of a record, with empty lists, bytes */
+    int64_t record_size;   /* smallest size of a record, with empty lists, bytes */
     bool has_list;
     long line;             /* of its declaration in the header */
     enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE: lacks the property */
@@ -75,7 +75,7 @@ struct ply_file {
     int32_t *corners;                /* [corner_count] of the current record, >= 0, or -1
                                       * in a strip */
     int64_t corner_count, corner_capacity;
-    int64_t record;                     /* number of the current record, from 0 */
+    int64_t record;                  /* number of the current record, from 0 */
     const char *record_name;         /* the name of the element, or "row", for messages */
     long line;                       /* number of the current text line */
     char *rest;                      /* unread part of the current text line */

@@ -52,7 +52,7 @@ enum kind { LAMPS, THINGS, REST }; /* REST: things and ground */
 
 /* Returns the box of the triangles of a kind. `rest`: the box of REST, for THINGS. */
 static struct extent box_of(const struct scene *scene, enum kind kind,
-                         const struct extent *rest, int up)
+                            const struct extent *rest, int up)
 {
     struct extent box = {.is_empty = true};
     for (int32_t i = 0; i < scene->sky_first; i++) {

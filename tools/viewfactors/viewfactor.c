@@ -224,7 +224,7 @@ static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
     struct visible visible = {seen / all, square(ERROR_AGREED * few)};
     if (visible.fraction > 0.0 && visible.fraction < 1.0)
         visible.variance = (spread_of(seen_p, all_p, visible.fraction) +
-                           spread_of(seen_q, all_q, visible.fraction)) / square(all);
+                            spread_of(seen_q, all_q, visible.fraction)) / square(all);
     return visible;
 }
 
