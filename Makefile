@@ -30,9 +30,9 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make prove           long tests: all cases of `make check`, which has some of each
-#                        kind; errors over six fourfold steps of epsilon; 500 random sets
-#                        of options; pictures beside the path tracer's; kills at forty
+#   make prove           long tests: `make check` on more ranks and by more compilers;
+#                        errors over six fourfold steps of epsilon; 500 random sets of
+#                        options; pictures beside the path tracer's; kills at forty
 #                        moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only), or

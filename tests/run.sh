@@ -4,7 +4,7 @@
 # Each prints TAP lines; failures are shown, the seconds of each test, slowest last, and
 # in the last line "N passed, N failed". A test that dies or ends without its plan counts
 # as one failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC and
-# MAKE. With PROVE set, by `make prove`, tests have all cases, not one of each kind.
+# MAKE. With PROVE set, by `make prove`, there are more ranks, compilers and limits.
 
 cd "$(dirname "$0")/.." || exit 2
 logs=$BUILD/tests/logs

@@ -68,8 +68,7 @@ box() {
         print "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4" }'
 }
 
-# proves: true in `make prove`, which tries all cases; `make check` tries one of each
-# kind.
+# proves: true in `make prove`, which tries more ranks, compilers and limits.
 proves() {
     [ -n "${PROVE-}" ]
 }
