@@ -1,5 +1,6 @@
 # Draws docs/front.csv: errors of pictures against seconds, a panel for each scene, a
-# colour for each number of rays. As tests/bench/chart.gp is called; makes OUT.svg.
+# colour for each number of rays; blocks filled, pixels open. Called as chart.gp is; makes
+# OUT.svg.
 set datafile separator ","
 SCENES = system("awk -F, 'NR > 1 && !known[$1]++ { print $1 }' ".csv)
 RAYS = system("awk -F, 'NR > 1 { print $2 }' ".csv." | sort -nu")
@@ -10,7 +11,7 @@ set logscale xy
 set grid lc rgb "#dddddd" lt 1 lw 0.6
 set tics nomirror scale 0.5
 set format "%g"
-set key top right samplen 1 spacing 0.9
+set key bottom left samplen 1 spacing 0.9
 set xlabel "seconds, one core" offset 0,0.4
 set ylabel "error, % (RMS)" offset 0.8,0
 set linetype 5 lc rgb "black"
