@@ -82,9 +82,9 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
     return !point_is_beside(x, &t) && (r->points || path_ends(r, met, x));
 }
 
-/* True if the bright patch met by a path, from x on its way, is aimed at from x: in
- * pixels, if a point of all bright patches, chosen by power, brings no more light than a
- * ray meeting this one. (A row would no longer sum to 1.) */
+/* True if a segment from x, a point of a path, finds the bright patch at `met`, and a ray
+ * is not to: in pixels, if a point chosen by power on all bright patches brings no more
+ * light than a ray would. (In a row the sum would no longer be 1.) */
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {

@@ -98,8 +98,8 @@ static void test_pixel(void)
     world_free(&twins);
 }
 
-/* A guess leaves the expectation, right or wrong: it is `part` of the furnace's light,
- * times `odd` on one child of each root. */
+/* Paths that take a guess for the light of all leaves find the same mean, right or wrong
+ * as the guess is: `part` of the furnace's light, times `odd` on one child of a root. */
 static void test_guess(double part, double odd, double precise, const char *what)
 {
     struct world room = furnace(false);
