@@ -34,7 +34,7 @@
 
 enum {
     SEGMENTS = 4, /* to lamps, for a pixel, at first */
-    ENOUGH = 64,  /* in an unsure pixel, at least; at most --final-gather */
+    ENOUGH = 64,  /* in an unsure pixel, at least, or a quarter of --final-gather */
     COVERED = 2,  /* --final-gather over the rays and segments for a pixel in which things
                      cover the leaf */
     STEEP = 2,    /* those on a steep leaf, over --final-gather */
@@ -247,7 +247,7 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     if (!(noise > 1.0) && apart * apart <= square)
         return 1;
     double more = sqrt(noise) * sqrt(sqrt(noise));
-    least = least < most ? least : most;
+    least = most / 4 > least ? most / 4 : least < most ? least : most;
     return more < least ? least : more < most ? (int)more : most;
 }
 
