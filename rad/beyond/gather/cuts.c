@@ -17,7 +17,8 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* Leaves of a region, at most; segments to tell how much of a node is seen. */
+/* Leaves of a region, at most; segments to tell how much of a node is seen, at least, and
+ * the rays from a leaf for which there is one. */
 enum { REGION_LEAVES = 64, PILOTS = 16 };
 
 /* A node is small if its radius is at most this part of its distance. */
@@ -167,11 +168,12 @@ static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
     struct sequence sequence =
         sequence_start(hash_mix((uint64_t)region) ^ (uint64_t)node->node);
     double start = hash_unit(sequence.scramble[0]);
-    for (int k = 0; k < PILOTS; k++) {
+    int pilots = cuts->segments / PILOTS > PILOTS ? cuts->segments / PILOTS : PILOTS;
+    for (int k = 0; k < pilots; k++) {
         double u[SEQUENCE_DIMENSIONS];
         sequence_point(&sequence, (uint32_t)k, u);
         struct choice choice = sender_choose(
-            cuts->senders, &cuts->senders->nodes[node->node], (k + start) / PILOTS);
+            cuts->senders, &cuts->senders->nodes[node->node], (k + start) / pilots);
         struct spot from = spot_in(model, cuts->regions->nodes[region],
                                    hash_unit(sequence.scramble[1] + (uint64_t)k), u);
         struct spot to = spot_on(model->forest, choice.patch, u[2], u[3]);
