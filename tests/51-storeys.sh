@@ -20,7 +20,7 @@ calls_to_form_factor      6     7
 includes_of_beyond        0     0
 ground_floor_lines     4149  4500
 source_lines          29547 16000
-test_lines            29967 16000
+test_lines            31560 16000
 long_lines                0     0
 what_per_1000_words     0.8     2
 that_per_1000_words     3.8    15
@@ -72,7 +72,7 @@ judge includes_of_beyond "$(cat rad/*.[ch] mpi/*.[ch] | grep -c '#include ".*bey
 judge ground_floor_lines "$(ls phr.c rad/*.[ch] mpi/*.[ch] | lines_of)"
 judge source_lines "$(source_files | lines_of)"
 judge upstairs_lines "$(find rad/beyond mpi/beyond -name '*.[ch]' | lines_of)"
-judge test_lines "$(test_files | lines_of)"
+judge test_lines "$( (test_files; echo tests/panel/table) | lines_of)"
 for folder in geom octree io lib tools scenes docs/course; do
     judge lines_of_${folder##*/} "$(find $folder -name '*.[ch]' | lines_of)"
 done
