@@ -30,6 +30,8 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
+#   make panel           every kind of scene in small, against its truth, a line each; with
+#                        BEFORE=commit beside what that made; SCENES='cornell door': some
 #   make prove           long tests: `make check` on more ranks and by more compilers;
 #                        errors over six fourfold steps of epsilon; 500 random sets of
 #                        options; pictures beside the path tracer's; kills at forty
@@ -114,6 +116,8 @@ vpath %.c tests/tools tests/whole
 
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay prices
+# Judges of the panel: leaves and pictures.
+JUDGES = judge shown
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
@@ -185,7 +189,7 @@ $(BUILD)/tests/phr.o: phr.c Makefile
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tests/phr.d \
     $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) \
-    $(BENCHES:%=$(BUILD)/tests/bench/%.d)
+    $(BENCHES:%=$(BUILD)/tests/bench/%.d) $(JUDGES:%=$(BUILD)/tests/panel/%.d)
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -211,6 +215,9 @@ $(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/bench.h \
 	    $< $(BUILD)/libphr.a $(if $(EMBREE),-lembree3) -lm
 
 errors: $(BUILD)/reference $(BUILD)/measure
+
+$(JUDGES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/panel/%.o $(TRUTH) $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
@@ -279,7 +286,7 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	mv build/answers.csv scenes/answers.csv
 
 check: $(PHR) $(IMGDIFF) build/viewfactors pathtracer tests build/room bench \
-    $(BENCHES:%=$(BUILD)/%) $(COURSE)
+    $(BENCHES:%=$(BUILD)/%) $(JUDGES:%=$(BUILD)/%) $(COURSE)
 	cp scenes/room.mtl $(BUILD)/tests
 	build/room 1000 1 >$(BUILD)/tests/room.obj
 	$(BUILD)/direct scenes/shadow.obj $(BUILD)/tests/shadow.ref 10000
@@ -307,6 +314,12 @@ prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
+
+# About five minutes on two cores, and ten more for truths, which are kept in
+# $(BUILD)/panel/truth. All runs are on one rank.
+panel: errors $(JUDGES:%=$(BUILD)/%) $(PHR) pathtracer build/viewfactors build/room
+	@BEFORE="$(BEFORE)" SCENES="$(SCENES)" MPIEXEC="$(MPIEXEC)" MAKE="$(MAKE)" \
+	    BUILD="$(BUILD)" PHR="./$(PHR)" sh tests/panel/panel.sh
 
 # About ten minutes, nearly all for Blender's pictures, which are kept in $(BUILD)/cycles.
 cycles: $(PHR) $(IMGDIFF) build/room
@@ -356,5 +369,5 @@ FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
     pages ablation numbers stability docs course exercise film answers \
-    check-long prove cycles golden pace portability fuzz install \
+    panel check-long prove cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE

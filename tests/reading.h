@@ -5,6 +5,7 @@
 #include "io/picture/texture.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
+#include "io/scene/sky.h"
 #include "mpi/broadcast.h"
 
 static inline struct scene *obj_read(const char *path, struct obj_repairs *repairs,
@@ -30,6 +31,7 @@ static inline struct scene *ply_read(struct source *source, struct error *error)
 struct reading {
     const char *path;
     bool two_sided, two_sided_lamps, radiances;
+    double sky; /* radiosity of a uniform sky around it, W/m^2; 0: none */
 };
 
 /* The prepared scene, or NULL after an error. */
@@ -42,6 +44,8 @@ static inline struct scene *scene_read(struct reading reading, struct error *err
         return NULL;
     if (reading.radiances)
         scene_take_radiances(scene);
+    if (reading.sky > 0.0)
+        sky_add(scene, (struct rgb){{reading.sky, reading.sky, reading.sky}});
     scene->two_sided = reading.two_sided;
     scene->two_sided_lamps = reading.two_sided_lamps;
     if (scene_prepare(scene, &repairs, error))

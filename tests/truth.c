@@ -65,8 +65,11 @@ struct truth truth_make(const struct scene *scene, int64_t wanted)
     struct truth truth = {.root_count = scene_root_count(scene),
                           .area = scene_area(scene)};
     int64_t capacity = 0;
+    double lit = 0.0;
+    for (int32_t root = 0; root < truth.root_count; root++)
+        lit += reflects(scene, root) ? scene_root_area(scene, root) : 0.0;
     for (int32_t root = 0; root < truth.root_count; root++) {
-        int level = level_of(scene, root, truth.area / (double)wanted);
+        int level = level_of(scene, root, lit / (double)wanted);
         int64_t parts = reflects(scene, root) ? INT64_C(1) << 2 * level : 0;
         RESERVE(truth.items, &capacity, truth.count + parts);
         for (int64_t i = 0; i < parts; i++)
@@ -300,14 +303,32 @@ static void gather_elements(const struct comm *comm, struct truth *truth)
     alloc_free(mine);
 }
 
-struct truth truth_trace(const struct comm *comm, const struct scene *scene,
-                         const struct octree *octree, int64_t wanted, int samples)
+/* By paths that begin on the element: hardly any from a wide sky meet it. */
+static void find_mean(struct element *element, int64_t number,
+                      const struct pathtracer *pathtracer, int paths)
 {
+    struct triangle part = pathtracer_part(element->id);
+    for (int half = 0; half < TRUTH_HALVES; half++)
+        element->mean[half] =
+            pathtracer_reflected(pathtracer, (int32_t)element->id.root, &part, paths,
+                                 (uint64_t)(TRUTH_HALVES * number + half));
+}
+
+struct truth truth_trace(const struct comm *comm, const struct scene *scene,
+                         const struct octree *octree, int64_t wanted,
+                         struct truth_paths paths)
+{
+    bool sky = scene->sky_first < scene->input_count;
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
     struct truth truth = truth_make(scene, wanted);
-    find_means(comm, &pathtracer, &truth, samples * truth.count);
-    for (int64_t i = comm->rank; i < truth.count; i += comm->size)
-        truth_find_point(&truth, i, &pathtracer, (samples + 3) / 4);
+    if (!sky)
+        find_means(comm, &pathtracer, &truth, paths.element * truth.count);
+    for (int64_t i = comm->rank; i < truth.count; i += comm->size) {
+        if (sky)
+            find_mean(&truth.items[i], i, &pathtracer, paths.element);
+        if (paths.point > 0)
+            truth_find_point(&truth, i, &pathtracer, paths.point);
+    }
     gather_elements(comm, &truth);
     pathtracer_free(&pathtracer);
     return truth;

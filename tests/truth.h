@@ -30,7 +30,7 @@ struct truth {
 };
 
 /* Elements without estimates for a prepared scene: at level 10, or each at most 1 /
- * `wanted` of the scene's area. */
+ * `wanted` of the area that reflects. */
 struct truth truth_make(const struct scene *scene, int64_t wanted);
 void truth_free(struct truth *truth);
 
@@ -42,11 +42,17 @@ double element_area(const struct element *element, const struct scene *scene);
 void truth_find_point(struct truth *truth, int64_t number,
                       const struct pathtracer *pathtracer, int samples);
 
-/* Collective. Elements with estimates, complete on rank 0: `samples` light paths for each
- * element and half, and a quarter of `samples` paths from each point. The same on any
- * number of ranks. */
+/* For each half. */
+struct truth_paths {
+    int element; /* light paths for each element; below a sky paths from it on */
+    int point;   /* paths from each point on, on an element of average size; 0: none */
+};
+
+/* Collective. Elements with estimates, complete on rank 0. The same on any number of
+ * ranks. */
 struct truth truth_trace(const struct comm *comm, const struct scene *scene,
-                         const struct octree *octree, int64_t wanted, int samples);
+                         const struct octree *octree, int64_t wanted,
+                         struct truth_paths paths);
 
 /* Files are in the machine's own byte order. */
 bool truth_write(const struct truth *truth, const char *path, struct error *error);

@@ -221,8 +221,10 @@ static int take_own(struct measure *measure, int argc, char **argv)
 static struct scene *read_all(struct measure *measure)
 {
     const struct options *options = &measure->options;
-    struct reading reading = {options->scene, options->two_sided,
-                              options->two_sided_lamps, options->ke == KE_RADIANCE};
+    struct reading reading = {.path = options->scene,
+                              .two_sided = options->two_sided,
+                              .two_sided_lamps = options->two_sided_lamps,
+                              .radiances = options->ke == KE_RADIANCE};
     struct scene *scene =
         scene_read_by_all(&measure->comm, reading, &measure->block, &measure->error);
     if (scene && measure->comm.rank == 0)

@@ -5,7 +5,8 @@
  *   mpiexec -n 2 build/mpi/reference scenes/cornell.obj cornell.ref
  *   build/mpi/measure scenes/cornell.obj cornell.ref --epsilon 1e-4
  *
- * ELEMENTS (20000) sets their size: each has at most that share of the scene's area.
+ * ELEMENTS (20000) sets their size: each has at most that share of all area that
+ * reflects.
  * SAMPLES (1000) is the number of light paths, for each element, of each of the two
  * estimates of their means, and a quarter of that the number of paths from its point
  * (tests/truth.c).
@@ -25,6 +26,7 @@ struct arguments {
     struct reading scene;
     const char *out;
     long long numbers[2]; /* elements, samples */
+    bool no_points;       /* means alone */
 };
 
 static bool is_count(const char *text, long long *count)
@@ -43,6 +45,10 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
             arguments->scene.two_sided = true;
         else if (strcmp(argv[i], "--two-sided-lamps") == 0)
             arguments->scene.two_sided = arguments->scene.two_sided_lamps = true;
+        else if (strcmp(argv[i], "--no-points") == 0)
+            arguments->no_points = true;
+        else if (strcmp(argv[i], "--sky") == 0 && i + 1 < argc)
+            arguments->scene.sky = strtod(argv[++i], NULL);
         else if (paths < 2)
             *(paths++ == 0 ? &arguments->scene.path : &arguments->out) = argv[i];
         else if (numbers == 2 || !is_count(argv[i], &arguments->numbers[numbers++]))
@@ -50,8 +56,8 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
     }
     return paths == 2 ||
            error_set(error, EXIT_USAGE,
-                     "usage: reference SCENE.obj OUT.ref [--two-sided[-lamps]] "
-                     "[ELEMENTS [SAMPLES]]");
+                     "usage: reference SCENE.obj OUT.ref [--two-sided[-lamps]] [--sky W] "
+                     "[--no-points] [ELEMENTS [SAMPLES]]");
 }
 
 static void make_reference(const struct comm *comm, const struct arguments *arguments,
@@ -60,8 +66,10 @@ static void make_reference(const struct comm *comm, const struct arguments *argu
     double start = comm_seconds();
     struct octree *octree =
         octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct truth truth = truth_trace(comm, scene, octree, arguments->numbers[0],
-                                     (int)arguments->numbers[1]);
+    int samples = (int)arguments->numbers[1];
+    struct truth_paths paths = {samples, arguments->no_points ? 0 : (samples + 3) / 4};
+    struct truth truth =
+        truth_trace(comm, scene, octree, arguments->numbers[0], paths);
     if (comm->rank == 0 && truth_write(&truth, arguments->out, error))
         printf("%s: %lld elements, %lld light paths each twice, %.1f s on %d rank(s); "
                "noise of elements %.2f %%, of points %.2f %%\n",

@@ -180,7 +180,8 @@ static bool trace_truth(const struct comm *comm, const char *path, int paths,
     if (scene) {
         struct octree *octree = octree_of(scene);
         *truth =
-            truth_trace(comm, scene, octree, TRUTH, paths);
+            truth_trace(comm, scene, octree, TRUTH,
+                        (struct truth_paths){paths, (paths + 3) / 4});
         octree_destroy(octree);
     } else if (comm->rank == 0) {
         tap_ok(false, "%s can be read", path);

@@ -222,7 +222,8 @@ static void test_file(const struct scene *scene, const struct truth *truth)
  * a sixth of the square of 1 %. */
 static void test_means(const struct comm *comm, const struct world *world)
 {
-    struct truth truth = truth_trace(comm, world->scene, world->octree, 64, 16384);
+    struct truth truth = truth_trace(comm, world->scene, world->octree, 64,
+                                     (struct truth_paths){16384, 4096});
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
     struct sample *samples = alloc_array((size_t)truth.count, sizeof *samples);
     for (int64_t i = 0; i < truth.count; i++) {
@@ -254,7 +255,8 @@ int main(int argc, char **argv)
     struct world world = floor_and_light(false, false),
                  sheet = floor_and_light(true, false),
                  below = floor_and_light(false, true);
-    struct truth truth = truth_trace(&comm, world.scene, world.octree, 64, 64);
+    struct truth truth = truth_trace(&comm, world.scene, world.octree, 64,
+                                     (struct truth_paths){64, 16});
     test_elements(world.scene, &truth);
     test_file(world.scene, &truth);
     test_means(&comm, &world);

@@ -1,0 +1,146 @@
+# make panel: what phr makes of the scenes of tests/panel/table, a line each; with
+# BEFORE=commit a line of that commit below each, and a mark at figures that have become
+# worse by more than they scatter.
+#
+# mean, rms, worst, median, tenth, held and noise are those of judge.c; specks, grain,
+# block and most those of shown.c. said: the summary's claim over the truth, of RMS,
+# median and tenth. power: absorbed over emitted. work: millions of tests. All others are
+# percent. Means over orders of faces; behind +- their deviation.
+#
+# Knobs: SCENES, names of lines; CHECK=yes: those with an asterisk, as TAP against their
+# limits; PHR; ELEMENTS and SAMPLES of a truth, PATHS of a pixel, SIZE of a picture.
+set -eu
+cd "$(dirname "$0")/../.."
+: "${BUILD:=build/mpi}" "${PHR:=./phr}" "${MPIEXEC:=mpiexec}" "${MAKE:=make}"
+: "${SCENES:=}" "${BEFORE:=}" "${CHECK:=}" "${ELEMENTS:=2000}" "${SAMPLES:=2000}"
+: "${PATHS:=256}" "${SIZE:=160}"
+export LC_ALL=C
+folder=$BUILD/panel truths=$BUILD/panel/truth
+mkdir -p "$truths"
+. tests/panel/scenes.sh
+. tests/bench/renew.sh
+
+# phr_of COMMIT: its phr, built in a folder of its own.
+phr_of() {
+    there=$folder/before-$(git rev-parse --short "$1")
+    [ -x "$there/phr" ] || {
+        mkdir -p "$there" && git archive "$1" | tar xf - -C "$there"
+        $MAKE -C "$there" phr >"$there/log" 2>&1
+    }
+    echo "$there/phr"
+}
+
+# built ORDER WORD...: $file.obj, and .view if there is one.
+built() {
+    order=$1
+    shift
+    file=$folder/$name-$order
+    case $1 in
+    room) cp scenes/room.mtl "$folder" && build/room "$2" 1 >"$file.obj" ;;
+    *)  if [ -f "scenes/$1.obj" ]; then
+            cp scenes/*.mtl "$folder" && cp "scenes/$1.obj" "$file.obj"
+            [ ! -f "scenes/$1.view" ] || cp "scenes/$1.view" "$file.view"
+        else
+            make_scene "$file" "$order" "$@"
+        fi ;;
+    esac
+}
+
+# truth ORDER SAMPLES: elements of $file.
+truth() {
+    ref=$truths/$name-$1-$ELEMENTS-$2.ref
+    [ -f "$ref" ] || {
+        $MPIEXEC -n 2 "$BUILD/reference" --no-points $sky "$file.obj" "$ref.new" \
+            "$ELEMENTS" "$2" >&2
+        mv "$ref.new" "$ref"
+    }
+}
+
+# traced: two pictures of $file.
+traced() {
+    shot=$truths/$name-$SIZE
+    for paths in $((PATHS / 4)) $PATHS; do
+        [ -f "$shot-$paths.pfm" ] || $MPIEXEC -n 2 build/pathtracer "$file.obj" $sky \
+            --quiet --view "$file.view" --size "${SIZE}x$SIZE" --samples "$paths" \
+            -o "$shot-$paths.pfm" >&2
+    done
+    shots="$shot-$PATHS.pfm $shot-$((PATHS / 4)).pfm"
+}
+
+# is_shown: a picture is made of $file.
+is_shown() {
+    [ -f "$file.view" ] || return 1
+    case ${CHECK:+$limits} in "" | *specks*) ;; *) return 1 ;; esac
+}
+
+# solved SIDE PHR ORDER: a line of figures of one run.
+solved() {
+    picture=""
+    ! is_shown || picture="--view $file.view --size ${SIZE}x$SIZE -o $folder/shown.pfm"
+    spent=$( ("$2" "$file.obj" --quiet $options --stats "$folder/stats" $picture \
+        -o "$folder/solution.ply" >"$folder/log" 2>&1; times) | processor_seconds)
+    set -- "$1" "$3" "$spent" $("$BUILD/judge" $sky "$file.obj" "$folder/solution.ply" \
+        $by 2>&1)
+    set -- "$@" $([ -z "$picture" ] && echo - - - - ||
+        "$BUILD/shown" "$folder/shown.pfm" ${shots-})
+    awk -v head="$name $1 $2 $3" '
+        function key(name) { return match($0, "\"" name "\": [-+.e0-9]*") ? \
+            substr($0, RSTART + length(name) + 4, RLENGTH - length(name) - 4) + 0 : 0 }
+        /"emitted_power"/ { emitted = key("emitted_power") }
+        /"absorbed_power"/ { absorbed = key("absorbed_power") }
+        /"gathered"/ { said = 100 * key("error") " " 100 * key("median") " " \
+            100 * key("worst_tenth") }
+        /"work"/ { inside = 1 }
+        inside { work += key("all") }
+        /^  }/ { inside = 0 }
+        END { part = emitted > 0 ? absorbed / emitted : "-"
+              print head, work / 1e6, part,
+                  said == "" ? "- - -" : said }' "$folder/stats" | tr '\n' ' '
+    shift 3
+    echo "$*"
+}
+
+# factors: a line of figures of one run of viewfactors.
+factors() {
+    want=${by%%=*}
+    found=$(build/viewfactors "$file.obj" 2>"$folder/log" |
+        awk -F, -v from="${want%,*}" -v to="${want#*,}" '$1 == from && $2 == to {
+            print $4 }')
+    echo "$name after 0 0 0 - - - - 1 $(of "100 * ($found / ${by#*=} - 1)")" \
+        "- - - - - - - - - -"
+}
+
+figures=$folder/figures
+: >"$figures"
+[ -z "$BEFORE" ] || before=$(phr_of "$BEFORE")
+grep '|' tests/panel/table | grep -v '^#' | tr -s ' ' >"$folder/lines"
+while IFS='|' read -r name scene options by limits; do
+    starred=${name%"${name#?}"} name=$(echo ${name#\*})
+    [ -z "$CHECK" ] || [ "$starred" = '*' ] || continue
+    case " $SCENES " in "  " | *" $name "*) ;; *) continue ;; esac
+    options=$(echo $options | sed 's/e3/--epsilon 1e-3 --final-gather 64/
+        s/sky=/--sky /')
+    sky=$(echo "$options" | sed -n 's/.*\(--sky .*\)/\1/p') by=$(echo $by) orders=0 shots=
+    case $limits in *orders*) orders="0 1 2" ;; esac
+    for order in $orders; do
+        built "$order" $scene
+        kept=$by
+        case " $by" in *" paths"*)
+            paths=${by##*paths} paths=${paths#/} by=${by%%paths*}
+            if [ -n "$CHECK" ]; then by=$(echo "$by" | sed 's/of=[^ ]*//')
+            else truth "$order" $((SAMPLES / ${paths:-1})); by=$by$ref; fi ;;
+        esac
+        if [ "$options" = factors ]; then
+            factors
+        else
+            [ ! -f "$file.view" ] || [ -n "$CHECK" ] || traced
+            solved after "$PHR" "$order"
+            [ -z "$BEFORE" ] || solved before "$before" "$order"
+        fi
+        by=$kept
+    done >>"$figures" </dev/null
+    [ -n "$CHECK" ] || grep "^$name " "$figures" | awk -f tests/panel/line.awk \
+        -v head="${head-yes}"
+    head=
+done <"$folder/lines"
+[ -z "$CHECK" ] || awk -f tests/panel/check.awk tests/panel/table "$figures"
