@@ -254,8 +254,8 @@ static double square_of(const double band[BANDS])
     return band[0] * band[0] + band[1] * band[1] + band[2] * band[2];
 }
 
-/* The claim is as large as the error. Two estimates tell little of a leaf's own noise: its
- * variance is taken to be as light over area, `per_light` times. */
+/* The claim is as large as the error. Two estimates tell little of a leaf's own noise:
+ * its variance is taken to be as light over area, `per_light` times. */
 static bool is_held(const struct leaf_error *e, const double per_light[BANDS])
 {
     for (int c = 0; c < BANDS; c++)
