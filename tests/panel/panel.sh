@@ -77,19 +77,26 @@ is_shown() {
 solved() {
     picture=""
     ! is_shown || picture="--view $file.view --size ${SIZE}x$SIZE -o $folder/shown.pfm"
+    rm -f "$folder/stats" "$folder/solution.ply" "$folder/shown.pfm"
     spent=$( ("$2" "$file.obj" --quiet $options --stats "$folder/stats" $picture \
         -o "$folder/solution.ply" >"$folder/log" 2>&1; times) | processor_seconds)
+    [ -f "$folder/stats" ] || { echo "$name $1 $3 fails"; return; }
     set -- "$1" "$3" "$spent" $("$BUILD/judge" $sky "$file.obj" "$folder/solution.ply" \
         $by 2>&1)
     set -- "$@" $([ -z "$picture" ] && echo - - - - ||
         "$BUILD/shown" "$folder/shown.pfm" ${shots-})
     awk -v head="$name $1 $2 $3" '
-        function key(name) { return match($0, "\"" name "\": [-+.e0-9]*") ? \
-            substr($0, RSTART + length(name) + 4, RLENGTH - length(name) - 4) + 0 : 0 }
+        function key(name) {
+            if (!match($0, "\"" name "\": [-+.e0-9]*")) return "-"
+            return substr($0, RSTART + length(name) + 4, RLENGTH - length(name) - 4) + 0
+        }
+        function percent(x) { return x == "-" ? x : 100 * x }
         /"emitted_power"/ { emitted = key("emitted_power") }
         /"absorbed_power"/ { absorbed = key("absorbed_power") }
-        /"gathered"/ { said = 100 * key("error") " " 100 * key("median") " " \
-            100 * key("worst_tenth") }
+        /"gathered"/ {
+            said = percent(key("error")) " " percent(key("median")) " " \
+                   percent(key("worst_tenth"))
+        }
         /"work"/ { inside = 1 }
         inside { work += key("all") }
         /^  }/ { inside = 0 }
