@@ -229,6 +229,7 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
     camera->eye = scene_to_input(site->scene, eye);
     camera->at =
         scene_to_input(site->scene, vec3_add(eye, azimuth(site, towards, -DOWN)));
+    camera->fronts_only = false;
     camera->fov = 360.0 / PI * arctangent(WIDE * narrow, 1.0);
 }
 
@@ -311,8 +312,8 @@ static double rate(const struct site *site, const struct camera *camera)
 
 enum shape { THING, PLAIN, BOX, SHAPES };
 
-/* Finds the best of the views on the list for a shape. */
-static void stand_outside(const struct site *site, enum shape shape,
+/* Finds the best of the views on the list for a shape. False if all are black. */
+static bool stand_outside(const struct site *site, enum shape shape,
                           struct camera *camera)
 {
     enum { SLOPED = 4, ASIDE = 6 };
@@ -322,18 +323,22 @@ static void stand_outside(const struct site *site, enum shape shape,
     static const double LIKING[SLOPED] = {0.1, 0.0, 0.0, -0.5};
     struct camera chosen = *camera;
     double best = -1.0;
+    bool lit = false;
     for (int i = 0; i < AZIMUTHS * SLOPED; i++) {
         int k = ASIDE + i / (2 * SLOPED) * 2, slope = i / 2 % SLOPED;
         camera->fronts_only = i % 2 == 0;
         camera_frame(camera, site->scene, &site->subject,
                      azimuth(site, k % AZIMUTHS, FROM_ABOVE[shape][slope]));
-        double rating = rate(site, camera) + LIKING[slope] + (i < 2 ? 0.05 : 0.0);
+        double rating = rate(site, camera);
+        lit = lit || rating > 0.0;
+        rating += LIKING[slope] + (i < 2 ? 0.05 : 0.0);
         if (rating > best) {
             best = rating;
             chosen = *camera;
         }
     }
     *camera = chosen;
+    return lit;
 }
 
 struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree,
@@ -353,9 +358,9 @@ struct camera viewpoint_choose(const struct scene *scene, const struct octree *o
                             .fov = OUTSIDE_FOV,
                             .width = width,
                             .height = height};
-    if (open < OPEN_ROOM && !is_small)
+    bool inside = open < OPEN_ROOM && !is_small;
+    enum shape shape = is_flat ? PLAIN : open < OPEN_BOX ? BOX : THING;
+    if (inside || (!stand_outside(&site, shape, &camera) && open < 1.0))
         enter_room(&site, free, &camera);
-    else
-        stand_outside(&site, is_flat ? PLAIN : open < OPEN_BOX ? BOX : THING, &camera);
     return camera;
 }
