@@ -14,6 +14,9 @@
  * lost, too. */
 #include "tools/balance.h"
 
+#include <string.h>
+
+#include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/gather/inside.h"
 #include "rad/beyond/sample.h"
@@ -23,13 +26,19 @@
  * power above which a run has failed. */
 static const double OFF = 0.01, OFF_BALANCE = 0.01, ABSURD = 1.5;
 
+/* Least part of a loss that is its reason, and of the light on backs on a group that is
+ * named. */
+static const double REASON = 0.5, LEAST = 0.05;
+
 /* Starts of rays over a surface, and over all others in its plane, scene units. */
 static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;
 
 enum {
     LAMP_RAYS = 1000,  /* onto all lamps */
     LAMP_POINTS = 64,  /* of each lamp */
-    RAYS = 100000,     /* from all lit fronts */
+    RAYS = 100000,     /* from all lit fronts, or by their light */
+    INSIDE_RAYS = 16,  /* from a point that may be inside of a thing */
+    NAMED = 3,         /* groups in a warning, at most */
     CRACKS = 1,        /* of these, so many may leave a closed scene */
     NOTHING = -2       /* for root_met() */
 };
@@ -187,6 +196,108 @@ static bool is_closed(const struct run *run)
     return lost <= CRACKS;
 }
 
+/* Light that ends on black backs, in parts of the emitted. */
+struct loss {
+    double *of;    /* [loss_places()] on backs of the faces of each group; of a scene of
+                      one group, of each input triangle */
+    double backs;  /* the sum of `of` */
+    double inside; /* the part of `backs` sent from inside of things */
+};
+
+static int32_t loss_places(const struct scene *scene)
+{
+    return scene->groups.count > 1 ? scene->groups.count : scene->input_count;
+}
+
+/* True if all rays from a point meet backs. */
+static bool is_inside(const struct run *run, const struct triangle *t,
+                      struct vec3 normal, struct vec3 point)
+{
+    struct octree_counts counts = {0};
+    for (int i = 0; i < INSIDE_RAYS; i++) {
+        struct half_line ray = ray_sample(t, normal, hash_mix((uint64_t)i), 0, 1);
+        ray.origin = point;
+        if (root_met(run->scene, run->octree, &ray, NOTHING, &counts) != -1)
+            return false;
+    }
+    return true;
+}
+
+/* Follows rays from the fronts of all roots, as many as by their light. */
+static struct loss find_loss(const struct run *run)
+{
+    const struct scene *scene = run->scene;
+    const struct rgb *radiosity = run->solver->model.forest->radiosity;
+    struct octree_counts counts = {0};
+    struct loss loss = {.of = alloc_array((size_t)loss_places(scene), sizeof *loss.of)};
+    double all = 0.0, sum = 0.0;
+    int64_t ray = 0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        all += scene_root_own_area(scene, root) * rgb_sum(radiosity[root]);
+    double each = all / scene_emitted_power(scene) / RAYS; /* of a ray */
+    for (int32_t root = 0; root < scene_root_count(scene); root++) {
+        struct triangle t = scene_root_triangle(scene, root);
+        struct vec3 normal = scene_root_plane(scene, root).normal;
+        sum += scene_root_own_area(scene, root) * rgb_sum(radiosity[root]);
+        for (; (double)ray < sum / all * RAYS; ray++) {
+            struct half_line sent = ray_sample(&t, normal, hash_mix((uint64_t)ray), 0, 1);
+            struct octree_hit hit;
+            if (!octree_first_hit(run->octree, sent.origin, sent.direction, false, &hit,
+                                  &counts) ||
+                scene_root_on(scene, hit.triangle, hit.front) >= 0)
+                continue;
+            loss.of[scene->groups.count > 1 ? scene->groups.of[hit.triangle]
+                                            : hit.triangle] += each;
+            loss.backs += each;
+            loss.inside += is_inside(run, &t, normal, sent.origin) ? each : 0.0;
+        }
+    }
+    return loss;
+}
+
+/* Returns up to three groups, or triangles, with most light on their backs. */
+static const char *name_backs(const struct scene *scene, struct loss *loss)
+{
+    static char text[200];
+    size_t at = 0;
+    text[0] = '\0';
+    for (int k = 0; k < NAMED; k++) {
+        int32_t most = 0;
+        for (int32_t i = 0; i < loss_places(scene); i++)
+            most = loss->of[i] > loss->of[most] ? i : most;
+        if (!(loss->of[most] > LEAST * loss->backs))
+            break;
+        const char *name = scene->groups.names;
+        for (int32_t i = 0; i < most && scene->groups.count > 1; i++)
+            name += strlen(name) + 1;
+        char number[40];
+        snprintf(number, sizeof number, "triangle %ld", (long)most);
+        at += (size_t)snprintf(text + at, sizeof text - at, "%s%.40s (%.0f %%)",
+                               k > 0 ? ", " : "", scene->groups.count > 1 ? name : number,
+                               100.0 * loss->of[most] / loss->backs);
+        loss->of[most] = 0.0;
+    }
+    return text;
+}
+
+/* Warns of the light lost in a closed scene, in parts of the emitted. */
+static void warn_of_loss(struct run *run, double lost)
+{
+    struct loss loss = find_loss(run);
+    const char *names = name_backs(run->scene, &loss);
+    bool backs = loss.backs > REASON * lost;
+    bool inside = backs && loss.inside > REASON * loss.backs;
+    run_say(run, "warning: %.3g %% of the light of this closed scene is lost: %s%s",
+            100.0 * lost,
+            inside  ? "it is sent inside of things or behind them, onto backs of "
+            : backs ? "it falls on black backs (see --two-sided), those of "
+            : run->vote.converged
+                ? "faces may lie on each other, or --epsilon is too large"
+                : "there are too few iterations",
+            backs ? names : "");
+    alloc_free(loss.of);
+}
+
 void balance_judge(struct run *run)
 {
     static const char CAUSE[] = "faces may lie on each other, or --epsilon is too large";
@@ -215,10 +326,5 @@ void balance_judge(struct run *run)
                 "or faces lie on each other",
                 100.0 * stats->gathered.closing);
     else if (escaped > OFF && is_closed(run))
-        run_say(run,
-                "warning: %.3g %% of the light of this closed scene is lost: "
-                "%sit may fall on black backs (see --two-sided), be sent inside of "
-                "things, faces may lie on each other, or --epsilon is too large",
-                100.0 * escaped,
-                run->vote.converged ? "" : "there are too few iterations, ");
+        warn_of_loss(run, escaped);
 }
