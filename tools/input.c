@@ -28,12 +28,20 @@ static void warn(struct run *run, int64_t count, const char *text, const char *d
 static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
-    char number[64] = "", lost[250] = "";
+    char number[64] = "", lost[250] = "", materials[300];
+    snprintf(materials, sizeof materials, "%s%s%s%s", read->materials.first,
+             *read->meant ? "; did you mean " : "", read->meant,
+             *read->meant ? "?" : "");
+    if (read->libraries.count > 0)
+        snprintf(run->missing, sizeof run->missing, "the file %.128s, which is missing",
+                 read->libraries.first);
+    else if (read->materials.count > 0)
+        snprintf(run->missing, sizeof run->missing,
+                 "the material %.128s, which has no definition", read->materials.first);
     warn(run, read->libraries.count,
          "material file(s) missing or not readable (first: %s)", read->libraries.first);
     warn(run, read->materials.count,
-         "material(s) without a definition, taken as grey (first: %s)",
-         read->materials.first);
+         "material(s) without a definition, taken as grey (first: %s)", materials);
     warn(run, read->nameless,
          "newmtl without a name: taken as the material of usemtl without one", "");
     warn(run, read->transparent, "transparent material(s) (d or Tr), taken as opaque",

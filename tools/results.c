@@ -12,6 +12,7 @@
 #include "io/picture/vtk.h"
 #include "mpi/picture.h"
 #include "rad/pushpull.h"
+#include "tools/dark.h"
 #include "tools/show.h"
 
 /* Writes the pictures of a view. On rank 0 alone. */
@@ -22,6 +23,7 @@ static void write_pictures(struct run *run, int view, float *picture)
     struct image image = {camera->width, camera->height, picture};
     struct tone tone = tone_choose(options->exposure, picture,
                                    (int64_t)camera->width * camera->height);
+    dark_warn(run, view, picture);
     for (int i = 0; i < options->output_count; i++) {
         const struct target *target = &options->outputs[i];
         struct error error = {.code = EXIT_DONE};

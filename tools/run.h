@@ -15,6 +15,8 @@ struct run {
     struct options options;
     struct scene *scene;
     struct camera *cameras;        /* [run_camera_count()] */
+    char missing[200];             /* where the lamps may be: in a library or material not
+                                      found, on rank 0; or "" */
     struct octree *octree;
     struct solution_mesh *stored;  /* the scene's file is a stored solution; else NULL */
     struct node_block block;       /* memory of scene and octree */

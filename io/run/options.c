@@ -337,6 +337,18 @@ static const struct option *find_option(const char *name)
     return strcmp(name, "-h") == 0 ? find_option("--help") : NULL;
 }
 
+/* Refuses an unknown option, with the name of one like it. */
+static bool refuse_option(const char *argument, struct error *error)
+{
+    char name[80];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (text_is_like(name, OPTIONS[i].name))
+            return error_set(error, EXIT_USAGE, "unknown option %s; did you mean %s?",
+                             argument, OPTIONS[i].name);
+    return error_set(error, EXIT_USAGE, "unknown option %s; see --help", argument);
+}
+
 /* Takes the option of --help=OPTION, whose dashes may be left out. */
 static bool set_help_on(struct options *options, const char *name, struct error *error)
 {
@@ -457,8 +469,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         }
         const struct option *option = find_option(argument);
         if (!option)
-            return error_set(error, EXIT_USAGE, "unknown option %s; see --help",
-                             argument);
+            return refuse_option(argument, error);
         if (!option->set)
             return error_set(error, EXIT_USAGE, "%s is a program of its own now: %s",
                              option->name, option->help);

@@ -361,6 +361,16 @@ static bool read_lines(struct obj_reader *reader)
     return true;
 }
 
+/* Finds a defined material with a name like the first one without a definition. */
+static void find_meant(const struct mtl_table *materials, struct obj_repairs *repairs)
+{
+    for (int32_t i = 0; i < materials->names.count && !*repairs->meant; i++)
+        if (materials->entries[i].defined &&
+            text_is_like(repairs->materials.first, materials->names.name[i]))
+            snprintf(repairs->meant, sizeof repairs->meant, "%s",
+                     materials->names.name[i]);
+}
+
 /* Numbers the used materials of the table in its order. Returns their number. */
 static int32_t number_materials(const struct obj_reader *reader, int32_t *number)
 {
@@ -378,8 +388,11 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         const struct mtl_entry *entry = &entries[i];
         number[i] = count;
         count += entry->used;
-        if (entry->used && !entry->defined)
+        if (entry->used && !entry->defined) {
             text_missing_add(&repairs->materials, reader->materials.names.name[i]);
+            if (repairs->materials.count == 1)
+                find_meant(&reader->materials, repairs);
+        }
         repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && (entry->maps[0] || entry->maps[1]);
         repairs->unread += entry->used && entry->unread;

@@ -277,6 +277,37 @@ bool text_ends_with(const char *path, const char *suffix)
     return length > tail && *end == '\0';
 }
 
+static void least_of(int *least, int value)
+{
+    *least = value < *least ? value : *least;
+}
+
+/* Edits between the first i letters of one and the first j of the other, pair by pair. */
+bool text_is_like(const char *a, const char *b)
+{
+    enum { LETTERS = 64, EDITS = 3 };
+    int edits[LETTERS + 1][LETTERS + 1];
+    size_t rows = strlen(a), columns = strlen(b);
+    size_t third = (rows < columns ? rows : columns) / 3;
+    if (rows > LETTERS || columns > LETTERS)
+        return false;
+    for (size_t i = 0; i <= rows; i++)
+        for (size_t j = 0; j <= columns; j++) {
+            int *least = &edits[i][j];
+            *least = (int)(i + j); /* right where i or j is 0 */
+            if (i == 0 || j == 0)
+                continue;
+            const char *p = a + i, *q = b + j; /* behind the letters */
+            bool same = tolower((unsigned char)p[-1]) == tolower((unsigned char)q[-1]);
+            least_of(least, edits[i - 1][j] + 1);
+            least_of(least, edits[i][j - 1] + 1);
+            least_of(least, edits[i - 1][j - 1] + !same);
+            if (i > 1 && j > 1 && p[-1] == q[-2] && p[-2] == q[-1])
+                least_of(least, edits[i - 2][j - 2] + 1);
+        }
+    return edits[rows][columns] <= (int)(third < EDITS ? third : EDITS);
+}
+
 char *text_path_beside(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/');

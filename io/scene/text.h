@@ -69,6 +69,11 @@ bool text_ends_with(const char *path, const char *suffix);
  * To be freed with alloc_free(). */
 char *text_path_beside(const char *path, const char *name);
 
+/* True if the words may be one, misspelt: at most a third of the letters of the shorter
+ * one, and at most three, are inserted, left out, changed or swapped; capitals do not
+ * count. Words have at most 64 letters. */
+bool text_is_like(const char *a, const char *b);
+
 /* Names not found. Starts as {0}. */
 struct text_missing {
     int64_t count;
