@@ -1,9 +1,9 @@
 /* Material libraries by name.
  *
- * `mtllib` lists names between blanks, but programs also write single names with blanks
- * in them. So the whole rest of the line is tried first, then its words, where a
- * backslash before a blank keeps a word together. A name is tried once, however often
- * named.
+ * `mtllib` lists names between blanks, but programs also write names with blanks in them.
+ * So the whole rest of the line is tried first. Then it is cut into names from its
+ * beginning: a name is as many words as there is a file of, or else one word. A backslash
+ * before a blank keeps a word together. A name is tried once, however often named.
  *
  * Programs also write folders of their own machine, with either slash. Where such a file
  * does not exist, the file of the same last name beside the OBJ file is taken. If only
@@ -18,11 +18,15 @@
 
 #include "io/scene/library.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 
-enum { LIBRARY_MAX = 1000 }; /* names in mtllib lines */
+enum {
+    LIBRARY_MAX = 1000, /* names in mtllib lines */
+    WORDS_MOST = 16     /* words of a name in a list */
+};
 
 struct lookup {
     struct mtl_table *table;
@@ -58,6 +62,13 @@ static bool is_harmless(const char *path)
 #endif
 }
 
+/* Turns backslashes into slashes, but for those before a blank. */
+static void turn_slashes(char *name)
+{
+    for (char *at = name; *at; at++)
+        *at = *at == '\\' && at[1] != ' ' ? '/' : *at;
+}
+
 static bool read_file(const struct lookup *lookup, const char *name, bool *found)
 {
     const char *beside = lookup->obj->path;
@@ -89,23 +100,57 @@ static bool try_name(const struct lookup *lookup, const char *name, bool *missin
     const char *part = last_part(name);
     bool good = read_file(lookup, name, &found);
     bool is_one_name = !strpbrk(name, " \t") == !strpbrk(part, " \t");
+    if (good && !found && strchr(name, '\\')) {
+        char *turned = alloc_string(name);
+        turn_slashes(turned);
+        good = read_file(lookup, turned, &found);
+        alloc_free(turned);
+    }
     if (good && !found && part != name && *part && is_one_name)
         good = read_file(lookup, part, &found);
     *missing = !found;
     return good;
 }
 
-/* Cuts the next name off `*rest`; a backslash keeps the blank that follows it. */
-static char *next_name(char **rest)
+/* True if there is a file beside the OBJ file with the name from `name` to `end`. */
+static bool exists(const struct lookup *lookup, const char *name, const char *end)
 {
-    char *name = *rest + strspn(*rest, " \t");
-    char *to = name, *from = name;
-    while (*from && *from != ' ' && *from != '\t') {
-        if (*from == '\\' && from[1] == ' ')
-            from++;
-        *to++ = *from++;
+    const char *beside = lookup->obj->path;
+    char *copy = alloc_array((size_t)(end - name) + 1, 1);
+    memcpy(copy, name, (size_t)(end - name));
+    turn_slashes(copy);
+    char *path = text_path_beside(is_descriptor(beside) ? "" : beside, copy);
+    FILE *file = is_harmless(path) ? fopen(path, "rb") : NULL;
+    bool good = file && (fgetc(file) != EOF || !ferror(file)); /* not a folder */
+    if (file)
+        fclose(file);
+    alloc_free(path);
+    alloc_free(copy);
+    return good;
+}
+
+/* Returns the end of the word at `at`; a backslash keeps the blank behind it. */
+static char *word_end(char *at)
+{
+    while (*at && *at != ' ' && *at != '\t')
+        at += *at == '\\' && at[1] == ' ' ? 2 : 1;
+    return at;
+}
+
+/* Cuts the next name off `*rest`. */
+static char *next_name(const struct lookup *lookup, char **rest)
+{
+    char *name = *rest + strspn(*rest, " \t"), *end = word_end(name), *to = name;
+    char *longer = end;
+    for (int words = 1; words < WORDS_MOST && *longer; words++) {
+        longer = word_end(longer + strspn(longer, " \t"));
+        end = exists(lookup, name, longer) ? longer : end;
     }
-    *rest = *from ? from + 1 : from;
+    *rest = *end ? end + 1 : end;
+    for (char *from = name; from < end; from++) {
+        from += *from == '\\' && from[1] == ' ';
+        *to++ = *from;
+    }
     *to = '\0';
     return *name ? name : NULL;
 }
@@ -126,7 +171,7 @@ bool library_read(struct mtl_table *table, struct text_names *tried,
         text_missing_add(lost, whole);
     if (!missing || !is_list)
         return true;
-    for (char *name; (name = next_name(&whole)) != NULL;) {
+    for (char *name; (name = next_name(&lookup, &whole)) != NULL;) {
         if (!try_name(&lookup, name, &missing))
             return false;
         if (missing)

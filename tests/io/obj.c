@@ -430,6 +430,12 @@ static void test_libraries(void)
                     "mtllib obj_test.mtl c/obj_test.mtl\n"
                     "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl",
                     1);
+    check_libraries("a list of names with blanks",
+                    "mtllib obj test two.mtl obj_test.mtl obj test two.mtl", 0);
+    check_libraries("of which some are missing",
+                    "mtllib my obj_test.mtl your obj test two.mtl his", 3);
+    check_libraries("back slashes", "mtllib ..\\scenes\\cornell.mtl obj_test.mtl\n"
+                                    "mtllib obj test two.mtl", 0);
     char *text = alloc_array(20000, 1);
     for (int i = 0; i <= 1000; i++)
         sprintf(text + strlen(text), "mtllib x%d\n", i);
