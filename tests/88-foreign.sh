@@ -1,6 +1,7 @@
 # Other programs open phr's outputs and find the numbers of the .pfm, the .ppm and the
 # .ply, the right way up. Those that are not installed are skipped. Debian has them in the
-# packages netpbm, imagemagick, openimageio-tools, python3-vtk9 and blender.
+# packages netpbm, imagemagick, openimageio-tools, python3-vtk9, python3-meshio
+# and blender.
 . tests/tap.sh
 
 ./phr scenes/cornell.obj --view scenes/cornell.view --size 96x64 --samples 1 \
@@ -80,6 +81,15 @@ if [ "$python" ]; then
     taps vtk "$python" tests/foreign.py vtk "$work"
 else
     tap 0 "VTK opens the outputs # SKIP there is no Python module of VTK 9"
+fi
+python=
+for name in python3 /usr/bin/python3; do
+    "$name" -c 'import meshio' 2>/dev/null && python=$name
+done
+if [ "$python" ]; then
+    taps meshio "$python" tests/foreign.py meshio "$work"
+else
+    tap 0 "meshio opens the .vtk # SKIP there is no meshio"
 fi
 if has blender; then
     taps blender blender -b --factory-startup -P tests/foreign.py -- blender "$work"

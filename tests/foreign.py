@@ -1,8 +1,8 @@
-# Opens phr's outputs FOLDER/a.* in VTK or in Blender, and compares every number with
+# Opens phr's outputs FOLDER/a.* in VTK, meshio or Blender, and compares every number with
 # those of the .pfm, the .ppm and the .ply, read here byte by byte. Prints "ok NAME" or
 # "not ok NAME" lines. Called by tests/88-foreign.sh:
 #
-#   python3 tests/foreign.py vtk FOLDER
+#   python3 tests/foreign.py vtk|meshio FOLDER
 #   blender -b --factory-startup -P tests/foreign.py -- blender FOLDER
 
 import struct
@@ -65,7 +65,7 @@ RADIOSITY = 'radiosity_r', 'radiosity_g', 'radiosity_b'
 
 def look_with_vtk(folder):
     from vtkmodules.vtkIOImage import vtkHDRReader, vtkPNGReader
-    from vtkmodules.vtkIOLegacy import vtkPolyDataReader
+    from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
 
     def read(reader, suffix):
@@ -79,8 +79,8 @@ def look_with_vtk(folder):
                 for k in range(width)] if array else []
 
     vertices, faces = read_ply(folder + '/a.ply')
-    mesh = read(vtkPolyDataReader(), 'vtk')
-    ids = mesh.GetPolys().GetConnectivityArray()
+    mesh = read(vtkUnstructuredGridReader(), 'vtk')
+    ids = mesh.GetCells().GetConnectivityArray()
     cells, points = mesh.GetCellData(), mesh.GetPointData()
     check('VTK: points of .vtk', numbers(mesh.GetPoints().GetData()) ==
           columns(vertices, 'x', 'y', 'z'))
@@ -133,6 +133,23 @@ def look_with_blender(folder):
     check('Blender: .hdr has the light of .pfm', nearest(pixels('hdr'), light, 1 / 128))
 
 
+def look_with_meshio(folder):
+    import meshio
+
+    vertices, faces = read_ply(folder + '/a.ply')
+    mesh = meshio.read(folder + '/a.vtk')
+    check('meshio: points', mesh.points.ravel().tolist() ==
+          columns(vertices, 'x', 'y', 'z'))
+    check('meshio: triangles', mesh.cells_dict['triangle'].ravel().tolist() ==
+          columns(faces, 0, 1, 2))
+    for name, keys in ('radiosity', RADIOSITY), ('root', ['root']), ('error', ['error']):
+        check('meshio: ' + name, mesh.cell_data[name][0].ravel().tolist() ==
+              columns(faces, *keys))
+    check('meshio: radiosity of points', mesh.point_data['radiosity'].ravel().tolist() ==
+          columns(vertices, *RADIOSITY))
+
+
 program, folder = sys.argv[-2:]
-{'vtk': look_with_vtk, 'blender': look_with_blender}[program](folder)
+{'vtk': look_with_vtk, 'meshio': look_with_meshio,
+ 'blender': look_with_blender}[program](folder)
 check(program + ' has opened all', True)

@@ -1,5 +1,6 @@
 /* Writing VTK's legacy format: lines of text announcing arrays, and the arrays, most
- * significant bytes first. ParaView and VTK drop the properties of PLY faces; here all
+ * significant bytes first. The mesh is an unstructured grid, which meshio knows, too; it
+ * does not know POLYDATA. ParaView and VTK drop the properties of PLY faces; here all
  * numbers arrive. Arrays are columns, so the leaves are walked once for each. */
 #include "io/picture/vtk.h"
 
@@ -9,7 +10,9 @@
 #include "io/picture/mesh.h"
 #include "io/run/output.h"
 
-enum column { CORNERS, RADIOSITY, ROOT, HIERARCHY, LEVEL, ERROR };
+enum { VTK_TRIANGLE = 5 }; /* the format's number of this type of cells */
+
+enum column { CORNERS, TYPE, RADIOSITY, ROOT, HIERARCHY, LEVEL, ERROR };
 
 static void write_rgb(struct output *output, const struct rgb *rgb)
 {
@@ -27,6 +30,7 @@ static void write_cell(struct output *output, const struct shading *shading,
         for (int k = 0; k < 3; k++)
             output_uint32_big(output, (uint32_t)shading->corners[3 * (int64_t)leaf + k]);
         break;
+    case TYPE: output_uint32_big(output, VTK_TRIANGLE); break;
     case RADIOSITY: write_rgb(output, &shading->forest->radiosity[leaf]); break;
     case ROOT: output_uint32_big(output, id.root); break;
     case HIERARCHY: output_uint32_big(output, id.hierarchy); break;
@@ -89,17 +93,20 @@ bool vtk_write(const struct shading *shading, const float *errors, const char *p
         [RADIOSITY] = "float", [ROOT] = "unsigned_int", [HIERARCHY] = "unsigned_int",
         [LEVEL] = "unsigned_char", [ERROR] = "float"};
     long long cells = mesh_count(shading->forest);
-    int last = errors ? ERROR : LEVEL; /* of as many columns beside the corners */
+    int last = errors ? ERROR : LEVEL;
     struct output output;
     if (!output_open(&output, path, error))
         return false;
     fprintf(output.file, "# vtk DataFile Version 3.0\n");
     write_title(&output);
-    fprintf(output.file, "BINARY\nDATASET POLYDATA\n");
+    fprintf(output.file, "BINARY\nDATASET UNSTRUCTURED_GRID\n");
     write_points(&output, shading, error);
-    fprintf(output.file, "POLYGONS %lld %lld\n", cells, 4 * cells);
+    fprintf(output.file, "CELLS %lld %lld\n", cells, 4 * cells);
     write_column(&output, shading, errors, CORNERS, error);
-    fprintf(output.file, "CELL_DATA %lld\nFIELD cells %d\n", cells, last);
+    fprintf(output.file, "CELL_TYPES %lld\n", cells);
+    write_column(&output, shading, errors, TYPE, error);
+    fprintf(output.file, "CELL_DATA %lld\nFIELD cells %d\n", cells,
+            last - RADIOSITY + 1);
     for (int column = RADIOSITY; column <= last; column++) {
         fprintf(output.file, "%s %lld %s\n", ARRAYS[column], cells, TYPES[column]);
         write_column(&output, shading, errors, (enum column)column, error);

@@ -6,9 +6,9 @@
 
 #include "io/picture/shading.h"
 
-/* Writes the legacy format of VTK, version 3.0, binary (big-endian), as POLYDATA: points
- * (input units) and a triangle for each leaf, as in mesh_write(). Cells have the fields
- * radiosity (3 floats, of the leaf, W/m^2), root and hierarchy (unsigned_int), level
+/* Writes the legacy format of VTK, version 3.0, binary (big-endian), as
+ * UNSTRUCTURED_GRID: points (input units) and a triangle for each leaf, as in
+ * mesh_write(). Cells have the fields radiosity (3 floats, of the leaf, W/m^2), root and hierarchy (unsigned_int), level
  * (unsigned_char) and, unless `errors` is NULL, error (float, W/m^2); points have
  * radiosity (3 floats, of the smooth shading, W/m^2). `errors`: [patches].
  * Errors: as output_close(). */

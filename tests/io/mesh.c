@@ -113,14 +113,18 @@ static void test_vtk(bool with_errors)
     size = load(PATH, file, SIZE_MOST);
     at = 0;
     bool texts = text_is("# vtk DataFile Version 3.0\nradiosity in W/m^2, made by phr\n"
-                         "BINARY\nDATASET POLYDATA\nPOINTS %d float\n", points, 0);
+                         "BINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS %d float\n", points,
+                         0);
     for (int v = 0; v < points; v++)
         right[1] = point_is(v, true) && right[1];
-    texts = text_is("\nPOLYGONS %d %d\n", n, 4 * n) && texts;
+    texts = text_is("\nCELLS %d %d\n", n, 4 * n) && texts;
     for (int i = 0; i < n; i++) {
         bool three = next_number(true) == 3;
         right[2] = corners_are(leaves[i], true) && three && right[2];
     }
+    texts = text_is("\nCELL_TYPES %d\n", n, 0) && texts;
+    for (int i = 0; i < n; i++)
+        right[2] = next_number(true) == 5 && right[2];
     texts = text_is("\nCELL_DATA %d\nFIELD cells %d\n", n, with_errors ? 5 : 4) && texts;
     texts = text_is("radiosity 3 %d float\n", n, 0) && texts;
     for (int i = 0; i < n; i++)
