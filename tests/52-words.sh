@@ -65,6 +65,17 @@ esac
 number=$(echo "$version" | sed 's/^phr \([0-9.]*\).*/\1/')
 check "the man page is of this version" grep -q "^\.TH PHR 1 .*\"phr $number\"" phr.1
 
+check "--help=view tells what a view is" \
+    [ "$(./phr --help=view | grep -cE '^    (eye|at|up|fov|size) [-0-9 ]+  ')" -eq 5 ]
+./phr --help=view | sed -n 's/^    \([a-z]* [-0-9. ]*\)  .*/\1/p' >"$work/help.view"
+check "by an example, which is one" ./phr scenes/squares.obj --epsilon 1e-2 --quiet \
+    --view "$work/help.view" --size 8x8 -o "$work/help.ppm"
+./phr scenes/squares.obj --paper 2>"$work/log" >"$work/out"
+check "a run that writes nothing says how to get a picture" \
+    grep -qx "phr: nothing is written: -o room.png writes a picture, .*" "$work/log"
+./phr scenes/squares.obj --paper --stats "$work/some.json" 2>"$work/log" >"$work/out"
+check "and one that writes does not" sh -c '! grep "nothing is written" "$0"' "$work/log"
+
 # --- options that do nothing ---
 
 # idle RANKS NAMES ARGUMENTS...: one warning names these, or none if there are none.

@@ -112,6 +112,13 @@ static void print_stored(struct run *run)
                (long long)run->scene->sky_first);
 }
 
+/* True if a run has no output but the summary. */
+static bool writes_nothing(const struct options *options)
+{
+    return options->output_count == 0 && !options->dump && !options->stats &&
+           !options->checkpoint && !options->save_links;
+}
+
 bool report_summary(struct run *run)
 {
     if (run->stored) {
@@ -149,6 +156,9 @@ bool report_summary(struct run *run)
             fmin(balance_touching(run), fmax(0.0, run->stats.escaped_power));
         run->stats.escaped_power -= run->stats.touching_power;
         balance_judge(run);
+        if (writes_nothing(&run->options))
+            run_say(run, "nothing is written: -o room.png writes a picture, "
+                         "-o room.ply a mesh");
         if (!run->options.quiet && !run->options.dump)
             stats_print(&run->stats,
                         files_take_stdout(&run->options) ? stderr : stdout);

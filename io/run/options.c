@@ -610,6 +610,19 @@ static const char FOOT[] =
     "  phr room.obj -o room.png\n"
     "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";
 
+/* What --help=OPTION says beyond the table. */
+static const struct {
+    const char *option, *text;
+} MORE[] = {
+    {"--view", "  A view is a text file of lines, in any order; # begins a comment:\n"
+               "    eye 278 273 -800     the camera's place, in units of the scene\n"
+               "    at 278 273 0         a point in the middle of the picture\n"
+               "    up 0 1 0             the direction that is up in it (0 1 0)\n"
+               "    fov 45               the angle from bottom to top, degrees (45)\n"
+               "    size 512 512         width and height, pixels (512 512)\n"
+               "  Only eye and at are needed. An example is scenes/cornell.view.\n"},
+};
+
 /* Prints name, value and words of an option; the words behind so many characters. Returns
  * the length. */
 static int print_option(const struct option *option, int width, FILE *file)
@@ -649,5 +662,8 @@ void options_print_help(const char *option, FILE *file)
         fprintf(file, "  from %g to %g\n", o->low, o->high);
     if (o->choices)
         fprintf(file, "  one of %s\n", o->choices);
+    for (size_t i = 0; i < sizeof MORE / sizeof MORE[0]; i++)
+        if (strcmp(MORE[i].option, o->name) == 0)
+            fputs(MORE[i].text, file);
     fputs("The manual, phr.1, has more.\n", file);
 }
