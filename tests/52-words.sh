@@ -186,7 +186,7 @@ run="$run -o $work/cornell.pfm"
 $run >"$work/out" 2>"$work/log"
 check "a log has no carriage return" [ -z "$(tr -dc '\r' <"$work/log")" ]
 check "and one line for linking, one for the roots, one for each iteration" \
-    [ "$(grep -vcE '^phr: (iteration [0-9]+: |roots are linked, |.*; linking$)' \
+    [ "$(grep -vcE '^phr: (iteration [0-9]+: |roots are|.*(; linking|--up\))$)' \
         "$work/log")" -eq 0 ]
 $run --quiet >"$work/out" 2>"$work/log"
 check "with --quiet there is no word" [ ! -s "$work/out" -a ! -s "$work/log" ]

@@ -174,6 +174,15 @@ static bool read_file(struct run *run, struct obj_repairs *repairs)
     return good;
 }
 
+void input_say_up(struct run *run)
+{
+    static const char *const NAMES[] = {"-z", "-y", "-x", "", "x", "y", "z"};
+    if (run->up_reason)
+        run_say(run, "%s: %s is up: %s (see --up)", run->options.scene,
+                NAMES[run->scene->up + 3], run->up_reason);
+    run->up_reason = NULL;
+}
+
 /* Adds the sky asked for, or one to make a scene without lamps visible. */
 static void add_sky(struct run *run)
 {
@@ -190,8 +199,30 @@ static void add_sky(struct run *run)
                          : "; and nothing reflects any (Kd, or colours of vertices)");
         *sky = (struct rgb){{1.0, 1.0, 1.0}};
     }
-    if (scene->input_count > 0 && rgb_sum(*sky) > 0.0)
+    if (scene->input_count > 0 && rgb_sum(*sky) > 0.0) {
+        input_say_up(run);
         sky_add(scene, *sky);
+    }
+}
+
+/* Takes the axis that is up: as given, or as a view has it, or as the scene seems to
+ * have. Views that do not say get the axis that is given. */
+static void take_up(struct run *run, const char *exporter)
+{
+    static const int32_t AXES[] = {[UP_GUESSED] = 0, [UP_Y] = 2, [UP_Z] = 3,
+                                   [UP_MINUS_Y] = -2, [UP_MINUS_Z] = -3, [UP_X] = 1,
+                                   [UP_MINUS_X] = -1};
+    struct scene *scene = run->scene;
+    scene->up = AXES[run->options.up];
+    for (int i = 0; i < run->options.view_count; i++) {
+        struct camera *camera = &run->cameras[i];
+        if (run->options.up && !camera->has_up)
+            camera_set_up(camera, scene->up);
+        else if (!scene->up && (scene->up = camera_up_axis(camera)) != 0)
+            run->up_reason = run->options.views[i];
+    }
+    if (!scene->up)
+        scene->up = subject_guess_up(scene, exporter, &run->up_reason);
 }
 
 static bool read_scene(struct run *run)
@@ -201,6 +232,8 @@ static bool read_scene(struct run *run)
     struct scene_repairs prepared = {0};
     if (!read_file(run, &read) || !stop_check(error))
         return false;
+    if (run->scene->input_count > 0)
+        take_up(run, read.exporter);
     if (run->stored)
         return true;
     if (run->options.ke == KE_RADIANCE)
@@ -237,7 +270,7 @@ static void read_input(struct run *run)
 {
     signals_end_calls(true);
     if (files_check(&run->options, &run->error) &&
-        files_probe(&run->options, &run->error) && read_scene(run) && read_cameras(run)) {
+        files_probe(&run->options, &run->error) && read_cameras(run) && read_scene(run)) {
         run_set_note(run);
         show_check(run);
     }

@@ -10,4 +10,7 @@
  * impossible --show), which is in run->error, on all ranks. */
 bool input_broadcast(struct run *run);
 
+/* Says, once, which axis is up, and why. */
+void input_say_up(struct run *run);
+
 #endif

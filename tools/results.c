@@ -13,6 +13,7 @@
 #include "mpi/picture.h"
 #include "rad/pushpull.h"
 #include "tools/dark.h"
+#include "tools/input.h"
 #include "tools/show.h"
 
 /* Writes the pictures of a view. On rank 0 alone. */
@@ -77,6 +78,7 @@ static void place_camera(struct run *run)
 {
     struct camera *camera = run->cameras;
     double start = comm_seconds();
+    input_say_up(run);
     *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
                                camera->width, camera->height);
     run->solver->account.seconds[PHASE_VIEWPOINT] = comm_seconds() - start;

@@ -15,6 +15,7 @@ struct run {
     struct options options;
     struct scene *scene;
     struct camera *cameras;        /* [run_camera_count()] */
+    const char *up_reason;         /* of the axis that is up, unless said; or NULL */
     char missing[200];             /* where the lamps may be: in a library or material not
                                       found, on rank 0; or "" */
     struct octree *octree;

@@ -96,8 +96,7 @@ static bool is_lit(const struct site *site, int32_t root)
 /* Returns a direction from its parts along two level axes and up. */
 static struct vec3 lift(const struct site *site, double right, double front, double up)
 {
-    return site->subject.z_up ? (struct vec3){right, -front, up}
-                              : (struct vec3){right, up, front};
+    return up_frame(site->subject.up, right, front, up);
 }
 
 /* Returns one of AZIMUTHS level directions, with a slope. Directions are even within 2
@@ -240,13 +239,14 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
 static int32_t kind_of(const struct site *site, int32_t root)
 {
     struct vec3 normal = scene_root_plane(site->scene, root).normal;
-    int up = site->subject.z_up ? 2 : 1, most = up;
+    int up = (site->subject.up < 0 ? -site->subject.up : site->subject.up) - 1;
+    int most = up;
     for (int axis = 0; axis < 3; axis++)
         if (fabs(vec3_axis(normal, axis)) > fabs(vec3_axis(normal, most)))
             most = axis;
     if (site->has_materials)
         return site->scene->material_of[scene_input_of(site->scene, root)];
-    return most == up ? 4 : 2 * (most == 0) + (vec3_axis(normal, most) < 0.0);
+    return most == up ? 4 : 2 * (most == (up == 0)) + (vec3_axis(normal, most) < 0.0);
 }
 
 /* True if there are several, but for those of skies. */
@@ -348,12 +348,13 @@ struct camera viewpoint_choose(const struct scene *scene, const struct octree *o
                         .subject = subject_find(scene)};
     site.has_materials = has_materials(&site);
     struct vec3 side = vec3_sub(site.subject.high, site.subject.low);
-    double tall = site.subject.z_up ? side.z : side.y;
-    double deep = site.subject.z_up ? side.y : side.z;
+    int up = (site.subject.up < 0 ? -site.subject.up : site.subject.up) - 1;
+    double tall = vec3_axis(side, up), wide = vec3_axis(side, (up + 1) % 3),
+           deep = vec3_axis(side, (up + 2) % 3);
     bool free[GRID * GRID * GRID];
     double open = find_openings(&site, free);
-    bool is_small = !scene->two_sided && real_max(side.x, deep) < SMALL * tall;
-    bool is_flat = tall < FLAT * real_min(side.x, deep);
+    bool is_small = !scene->two_sided && real_max(wide, deep) < SMALL * tall;
+    bool is_flat = tall < FLAT * real_min(wide, deep);
     struct camera camera = {.up = lift(&site, 0.0, 0.0, 1.0),
                             .fov = OUTSIDE_FOV,
                             .width = width,

@@ -292,28 +292,29 @@ static const struct option OPTIONS[] = {
      set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
     {"--max-level", "N", "of subdivision (10)",
      WHOLE(criterion.max_level, 0, ID_MAX_LEVEL)},
-    {"--min-area", "A", "of a patch (1e-10)", REAL(criterion.min_area, 0, 1)},
-    {"--tolerance", "T", "of the solution (1e-5)", REAL(criterion.tolerance, 0, 1)},
-    {"--max-iterations", "N", "at most (1000)", WHOLE(criterion.max_iterations, 1, 1e9)},
-    {"--oracle", "error|bf", "what splits a link", CHOICE(criterion.oracle, "bf|error")},
+    {"--min-area", "A", "", REAL(criterion.min_area, 0, 1)},
+    {"--tolerance", "T", "", REAL(criterion.tolerance, 0, 1)},
+    {"--max-iterations", "N", "", WHOLE(criterion.max_iterations, 1, 1e9)},
+    {"--oracle", "error|bf", "", CHOICE(criterion.oracle, "bf|error")},
     {"--form-factor", "polygon|disk", "", CHOICE(criterion.form_factor, "disk|polygon")},
-    {"--linking", "tree|pairs", "where links begin",
+    {"--linking", "tree|pairs", "",
      CHOICE(criterion.linking, "pairs|tree")},
     {"--final-gather", "N[,pixels]", "rays (256)",
      set_gather, FIELD(criterion.final_gather), 0, GATHER_RAYS_MOST, NULL},
-    {"--solver", "cg|jacobi", "over the links", CHOICE(criterion.solver, "jacobi|cg")},
+    {"--solver", "cg|jacobi", "", CHOICE(criterion.solver, "jacobi|cg")},
     {"--balance", "default|greedy|none", "",
      CHOICE(criterion.balance, "none|greedy|default")},
-    {"--paper", "", "the paper's of these", set_paper, FIELD(criterion), 0, 0, NULL},
-    {"--alpha", "A", "inherited cost (0.5)", REAL(criterion.alpha, 0, 1)},
+    {"--paper", "", "the paper's method", set_paper, FIELD(criterion), 0, 0, NULL},
+    {"--alpha", "A", "", REAL(criterion.alpha, 0, 1)},
     {"--two-sided", "", "backs reflect", FLAG(two_sided)},
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
     {"--ke", "radiosity|radiance", "of lamps", CHOICE(ke, "radiosity|radiance")},
+    {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
     {"--sky", "B|R,G,B", "around the scene", set_colour, FIELD(sky), 0, 1e30, NULL},
-    {"--save-links", "F", "those of all pairs", TEXT(save_links)},
-    {"--load-links", "F", "in their place", TEXT(load_links)},
+    {"--save-links", "F", "", TEXT(save_links)},
+    {"--load-links", "F", "", TEXT(load_links)},
     {"--checkpoint", "F", "after each pass", TEXT(checkpoint)},
-    {"--every", "N", "only each N-th pass (1)", WHOLE(every, 1, 1e9)},
+    {"--every", "N", "", WHOLE(every, 1, 1e9)},
     {"--resume", "F", "go on from there", TEXT(resume)},
     {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
     {"--stats", "FILE", "report as JSON", TEXT(stats)},
@@ -343,7 +344,7 @@ static bool refuse_option(const char *argument, struct error *error)
     char name[80];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
     for (int i = 0; i < OPTION_COUNT; i++)
-        if (text_is_like(name, OPTIONS[i].name))
+        if (strcmp(name, OPTIONS[i].name) != 0 && text_is_like(name, OPTIONS[i].name))
             return error_set(error, EXIT_USAGE, "unknown option %s; did you mean %s?",
                              argument, OPTIONS[i].name);
     return error_set(error, EXIT_USAGE, "unknown option %s; see --help", argument);
@@ -621,6 +622,18 @@ static const struct {
                "    fov 45               the angle from bottom to top, degrees (45)\n"
                "    size 512 512         width and height, pixels (512 512)\n"
                "  Only eye and at are needed. An example is scenes/cornell.view.\n"},
+    {"--min-area", "  of a patch, relative to the scene (1e-10)\n"},
+    {"--tolerance", "  of the solution (1e-5)\n"},
+    {"--max-iterations", "  at most (1000)\n"},
+    {"--oracle", "  what splits a link: its error, or as in the paper\n"},
+    {"--linking", "  where links begin: at the top of a tree, or as in the paper\n"},
+    {"--form-factor", "  of links: from points to polygons, or as in the paper\n"},
+    {"--solver", "  over the links: conjugate residuals, or as in the paper\n"},
+    {"--balance", "  how links are dealt to ranks\n"},
+    {"--alpha", "  share of its parent's cost in a link's (0.5)\n"},
+    {"--save-links", "  the links of all pairs, with --paper\n"},
+    {"--load-links", "  the links of all pairs, with --paper, in their place\n"},
+    {"--every", "  a checkpoint only at each N-th pass (1)\n"},
 };
 
 /* Prints name, value and words of an option; the words behind so many characters. Returns
@@ -633,17 +646,32 @@ static int print_option(const struct option *option, int width, FILE *file)
     return length + fprintf(file, "%*s%s", gap, "", option->help);
 }
 
-/* Prints all options in two columns; an option too wide has a line of its own. */
+/* Prints the options with words in two columns, an option too wide on a line of its own;
+ * then those without, one after the other. */
 static void print_options(FILE *file)
 {
-    enum { COLUMN = 40, CALL_LEFT = 14, CALL_RIGHT = 12 }; /* characters */
+    enum { COLUMN = 40, CALL_LEFT = 14, CALL_RIGHT = 12, WIDTH = 79 }; /* characters */
     bool right = false;
     for (int i = 0; i < OPTION_COUNT && OPTIONS[i].set; i++) {
+        if (!*OPTIONS[i].help)
+            continue;
         fputs(right ? "" : "  ", file);
         int length = print_option(&OPTIONS[i], right ? CALL_RIGHT : CALL_LEFT, file);
         right = !right && length < COLUMN;
         fprintf(file, "%*s%s", right ? COLUMN - length : 0, "", right ? "" : "\n");
     }
+    int at = WIDTH;
+    fputs(right ? "\n" : "", file);
+    for (int i = 0; i < OPTION_COUNT && OPTIONS[i].set; i++) {
+        int length = (int)(strlen(OPTIONS[i].name) + strlen(OPTIONS[i].value) + 3);
+        if (*OPTIONS[i].help)
+            continue;
+        if (at + length > WIDTH)
+            at = fprintf(file, "%s ", at < WIDTH ? "\n" : "") - (at < WIDTH);
+        at += fprintf(file, " ");
+        at += print_option(&OPTIONS[i], 0, file);
+    }
+    fputs("\n", file);
 }
 
 void options_print_help(const char *option, FILE *file)

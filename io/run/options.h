@@ -18,6 +18,9 @@ enum show { SHOW_LIGHT, SHOW_MESH, SHOW_OWNER, SHOW_LEVEL, SHOW_ERROR, SHOW_LINK
 /* What --dump prints. */
 enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
 
+/* Axes that may be up, in the order of --up. */
+enum up { UP_GUESSED, UP_Y, UP_Z, UP_MINUS_Y, UP_MINUS_Z, UP_X, UP_MINUS_X };
+
 /* How a scene states the light of its lamps. */
 enum ke { KE_RADIOSITY, KE_RADIANCE };
 
@@ -43,6 +46,7 @@ struct options {
     enum show show;
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
     double exposure;          /* 0: chosen from the picture */
+    enum up up;               /* axis that is up */
     enum ke ke;               /* of Ke, and of the emissions of a PLY file */
     struct rgb sky;           /* radiosity of a sky, W/m^2; 0: none */
     bool two_sided;           /* backs reflect */

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double ALONG = 0.96;  /* cosine to an axis of a direction along it */
 static const double MARGIN = 1.04; /* around a framed scene */
 
 /* Pre: 0 < x < pi / 2. */
@@ -127,7 +128,30 @@ bool camera_of_text(struct camera *camera, struct text *text, struct error *erro
     while ((line = text_line(text)) != NULL)
         if (!read_view_line(text, line, camera, &seen, error))
             return false;
+    camera->has_up = seen.up;
     return check_view(text->path, camera, &seen, error);
+}
+
+void camera_set_up(struct camera *camera, int32_t up)
+{
+    struct vec3 axis = up_frame(up, 0.0, 0.0, 1.0);
+    if (!are_parallel(vec3_sub(camera->at, camera->eye), axis))
+        camera->up = axis;
+}
+
+int32_t camera_up_axis(const struct camera *camera)
+{
+    struct vec3 up = vec3_unit(camera->up);
+    struct vec3 forward = vec3_unit(vec3_sub(camera->at, camera->eye));
+    int32_t found = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double along = vec3_axis(up, axis);
+        if (!camera->has_up || fabs(vec3_axis(forward, axis)) > ALONG)
+            return 0;
+        if (fabs(along) > ALONG)
+            found = along > 0.0 ? axis + 1 : -axis - 1;
+    }
+    return found;
 }
 
 bool camera_read(const char *path, struct camera *camera, struct error *error)

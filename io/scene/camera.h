@@ -19,6 +19,7 @@ struct camera {
     struct vec3 up;          /* direction, not along at - eye */
     double fov;              /* vertical, degrees, 0..180 exclusive */
     int width, height;       /* pixels */
+    bool has_up;             /* the view says which way is up */
     bool fronts_only;        /* rays pass through the backs of input triangles */
 };
 
@@ -28,6 +29,13 @@ struct camera {
  * Errors: "FILE:LINE: REASON", EXIT_USAGE. */
 bool camera_read(const char *path, struct camera *camera, struct error *error);
 bool camera_of_text(struct camera *camera, struct text *text, struct error *error);
+
+/* Lets an axis (struct scene) be up in a view, unless the view looks along it. */
+void camera_set_up(struct camera *camera, int32_t up);
+
+/* Returns the axis that is up as a view says (struct scene); 0: it does not say, or looks
+ * along an axis, as in a plan, whose north is up in the picture. */
+int32_t camera_up_axis(const struct camera *camera);
 
 /* Puts the camera outside the box of the subject, in the direction `towards` from its
  * middle (of any length but 0, not along up), at the smallest distance that shows the

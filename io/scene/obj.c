@@ -507,7 +507,11 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
 {
     *repairs = (struct obj_repairs){repairs->files, repairs->mean_of, .textured = 0};
     struct obj_reader reader = {.repairs = repairs, .error = error};
-    bool good = text_of_source(&reader.text, source, error) && read_lines(&reader);
+    bool good = text_of_source(&reader.text, source, error);
+    if (good && reader.text.bytes[reader.text.position] == '#')
+        snprintf(repairs->exporter, sizeof repairs->exporter, "%.*s",
+                 (int)strcspn(reader.text.bytes, "\r\n"), reader.text.bytes);
+    good = good && read_lines(&reader);
     text_free(&reader.text);
     if (!good && !reader.text.unreadable && reader.vertices.count == 0 &&
         error->code == EXIT_USAGE && format_of(source)) {

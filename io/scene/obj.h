@@ -23,6 +23,7 @@
 struct obj_repairs {
     struct text_names *files;      /* where paths of libraries and pictures go, or NULL */
     mtl_mean *mean_of;             /* finds the colour of a picture; NULL: of none */
+    char exporter[80];             /* the first line, if it is a comment; or "" */
     struct text_missing materials; /* names without a definition: neutral grey instead */
     char meant[128];               /* a defined name like the first of these, or "" */
     struct text_missing libraries; /* mtllib files that could not be opened */

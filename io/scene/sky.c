@@ -38,7 +38,7 @@ static void add_part(struct dome *dome, struct triangle part, int levels)
 
 void sky_add(struct scene *scene, struct rgb radiosity)
 {
-    bool z_up = subject_find(scene).z_up;
+    int32_t axis = subject_find(scene).up;
     struct vec3 low = triangle_low(&scene->triangles[0]), high = low;
     for (int32_t i = 0; i < scene->input_count; i++) {
         low = vec3_least(low, triangle_low(&scene->triangles[i]));
@@ -47,10 +47,14 @@ void sky_add(struct scene *scene, struct rgb radiosity)
     struct dome dome = {scene, vec3_middle(low, high),
                         0.5 * DISTANCE * vec3_length(vec3_sub(high, low)),
                         scene->input_count};
-    *(z_up ? &dome.centre.z : &dome.centre.y) = z_up ? low.z : low.y;
+    struct vec3 up = up_frame(axis, 0.0, 0.0, 1.0), side = up_frame(axis, 1.0, 0.0, 0.0);
+    double bottom = vec3_dot(up, low) < vec3_dot(up, high) ? vec3_dot(up, low)
+                                                           : vec3_dot(up, high);
+    dome.centre = (struct vec3){up.x != 0.0 ? bottom * up.x : dome.centre.x,
+                                up.y != 0.0 ? bottom * up.y : dome.centre.y,
+                                up.z != 0.0 ? bottom * up.z : dome.centre.z};
     scene_add_sky(scene, FACETS, (struct material){.emission = radiosity});
-    struct vec3 up = z_up ? (struct vec3){0, 0, 1} : (struct vec3){0, 1, 0};
-    struct vec3 side = {1, 0, 0}, other = vec3_cross(up, side);
+    struct vec3 other = vec3_cross(up, side);
     for (int k = 0; k < 4; k++) {
         add_part(&dome, (struct triangle){{up, other, side}}, LEVELS);
         struct vec3 before = side;

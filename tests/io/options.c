@@ -349,7 +349,7 @@ static void test_errors(void)
     check_refused("a.obj -o=1", "unknown option -o=1; see --help");
     check_refused("a.obj --samples=x", "--samples: 'x' is not a number");
     check_refused("--help=eps", "--help: there is no option eps");
-    check_refused("a.obj --Flat", "unknown option --Flat; see --help");
+    check_refused("a.obj --Flat", "unknown option --Flat; did you mean --flat?");
     check_refused("a.obj -- --flat", "one scene at a time: a.obj and --flat");
     check_refused("a.obj -o ppm:",
                   "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
@@ -362,7 +362,7 @@ static void test_errors(void)
     check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
     check_refused("a.obj --view a -o m.ply --view b -o b.ppm",
                   "--view a: no picture (-o) follows it");
-    check_refused("--flat --fast --help", "unknown option --fast; see --help");
+    check_refused("--flat --fast --help", "unknown option --fast; did you mean --flat?");
     check_refused("a.obj --quiet --verbose", "--quiet and --verbose do not go together");
     check_refused("a.obj --stats a.json --stats b.json",
                   "--stats is given twice: a.json and b.json");
