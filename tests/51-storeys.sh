@@ -22,9 +22,6 @@ ground_floor_lines     4149  4500
 source_lines          30147 16000
 test_lines            32060 16000
 long_lines                0     0
-what_per_1000_words     0.8     2
-that_per_1000_words     3.8    15
-it_they_them_per_1000_words 5.2 15
 lines_of_geom          3432  3500
 lines_of_octree        2551  2600
 lines_of_io            9887  8600
@@ -32,14 +29,11 @@ lines_of_lib            228   300
 lines_of_tools         4979  4700
 lines_of_scenes        1025  1100
 lines_of_course        1809  1900
-large_structs             2     0
 structs_twice             0     0
 upstairs_lines         9849  9200
 named_numbers_upstairs  121    70
 tuned_numbers            70    70
 bare_numbers_upstairs   120   134
-fields_upstairs          20    20
-fields_elsewhere        165    20
 functions_of_row        297   200
 calls_to_first_ray       12     9
 calls_to_first_segment   17    10
