@@ -40,7 +40,8 @@ fi
 
 # ImageMagick has 16 bits a sample, up to 1: lamps are cut off. It takes .pfm for sRGB.
 if has convert && convert -version 2>/dev/null | grep -q '^Version: ImageMagick'; then
-    check "ImageMagick: .png has the codes of .ppm" same_codes convert "$work/a.png" ppm:-
+    check "ImageMagick: .png has the codes of .ppm" \
+        same_codes convert "$work/a.png" +set comment ppm:-
     convert "$work/a.hdr" +set comment -set colorspace sRGB "pfm:$work/magick.pfm"
     check "ImageMagick: .hdr has the light of .hdr read by imgdiff" \
         diff_of "$work/magick.pfm" "$work/a.hdr" --below 1 --tolerance 1e-4
