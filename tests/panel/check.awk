@@ -13,7 +13,7 @@ NR == FNR {
 }
 {
     value["power"] = $6; value["mean"] = $11; value["rms"] = $12; value["worst"] = $13
-    value["held"] = $16; value["specks"] = $18
+    value["held"] = $16; value["specks"] = $18; value["peak"] = $22
     words = split(limits[$1], word, " ")
     for (k = 1; k <= words; k++) {
         what = word[k]
@@ -29,7 +29,7 @@ NR == FNR {
             good = x != "-" && x + 0 >= limit + 0
         else
             good = x != "-" && x ^ 2 <= limit ^ 2
-        judge(good && NF == 21,
+        judge(good && NF == 22,
               $1 ": " what " " x ", " (what == "held" ? "at least " : "limit ") limit)
     }
 }

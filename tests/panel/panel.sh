@@ -3,7 +3,7 @@
 # worse by more than they scatter.
 #
 # mean, rms, worst, median, tenth, held and noise are those of judge.c; specks, grain,
-# block and most those of shown.c. said: the summary's claim over the truth, of RMS,
+# block, most and peak those of shown.c. said: the summary's claim over the truth, of RMS,
 # median and tenth. power: absorbed over emitted. work: millions of tests. All others are
 # percent. Means over orders of faces; behind +- their deviation.
 #
@@ -70,7 +70,7 @@ traced() {
 # is_shown: a picture is made of $file.
 is_shown() {
     [ -f "$file.view" ] || return 1
-    case ${CHECK:+$limits} in "" | *specks*) ;; *) return 1 ;; esac
+    case ${CHECK:+$limits} in "" | *specks* | *peak*) ;; *) return 1 ;; esac
 }
 
 # solved SIDE PHR ORDER: a line of figures of one run.
@@ -83,7 +83,7 @@ solved() {
     [ -f "$folder/stats" ] || { echo "$name $1 $3 fails"; return; }
     set -- "$1" "$3" "$spent" $("$BUILD/judge" $sky "$file.obj" "$folder/solution.ply" \
         $by 2>&1)
-    set -- "$@" $([ -z "$picture" ] && echo - - - - ||
+    set -- "$@" $([ -z "$picture" ] && echo - - - - - ||
         "$BUILD/shown" "$folder/shown.pfm" ${shots-})
     awk -v head="$name $1 $2 $3" '
         function key(name) {
@@ -114,7 +114,7 @@ factors() {
         awk -F, -v from="${want%,*}" -v to="${want#*,}" '$1 == from && $2 == to {
             print $4 }')
     echo "$name after 0 0 0 - - - - 1 $(of "100 * ($found / ${by#*=} - 1)")" \
-        "- - - - - - - - - -"
+        "- - - - - - - - - - -"
 }
 
 figures=$folder/figures

@@ -14,6 +14,7 @@
  *     block    percent: RMS error of blocks of 8 x 8 over the light, less noise; lamps
  *              and skies, blocks with a pixel 16 times the median one, do not count
  *     most     percent: the largest error of a block of 16 x 16 over its own light
+ *     peak     W/m^2: the brightest band of a pixel
  *
  * Codes are those of a .png by the picture's own exposure. */
 #include <math.h>
@@ -193,12 +194,16 @@ int main(int argc, char **argv)
         if (argc == 4) {
             double noise = differ(&image[2], &image[1], FINE).rms;
             double block = differ(&image[0], &image[1], FINE).rms;
-            printf(" %.3g %.3g\n",
+            printf(" %.3g %.3g",
                    100.0 * sqrt(fmax(0.0, block * block - noise * noise / 3.0)),
                    100.0 * differ(&image[0], &image[1], COARSE).most);
         } else {
-            printf(" - -\n");
+            printf(" - -");
         }
+        double peak = 0.0;
+        for (int64_t i = 0; i < 3 * pixels; i++)
+            peak = fmax(peak, (double)image[0].rgb[i]);
+        printf(" %.3g\n", peak);
     } else {
         fprintf(stderr, "shown: %s\n", error.text);
     }
