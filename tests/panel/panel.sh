@@ -46,19 +46,22 @@ built() {
     esac
 }
 
-# truth ORDER SAMPLES: elements of $file.
+# sum_of FILE...: tells files apart.
+sum_of() { cat "$@" 2>/dev/null | cksum | cut -d ' ' -f 1; }
+
+# truth SAMPLES: elements of $file.
 truth() {
-    ref=$truths/$name-$1-$ELEMENTS-$2.ref
+    ref=$truths/$name-$(sum_of "$file.obj" "$file.mtl")-$ELEMENTS-$1.ref
     [ -f "$ref" ] || {
         $MPIEXEC -n 2 "$BUILD/reference" --no-points $sky "$file.obj" "$ref.new" \
-            "$ELEMENTS" "$2" >&2
+            "$ELEMENTS" "$1" >&2
         mv "$ref.new" "$ref"
     }
 }
 
 # traced: two pictures of $file.
 traced() {
-    shot=$truths/$name-$SIZE
+    shot=$truths/$name-$(sum_of "$file.obj" "$file.mtl" "$file.view")-$SIZE
     for paths in $((PATHS / 4)) $PATHS; do
         [ -f "$shot-$paths.pfm" ] || $MPIEXEC -n 2 build/pathtracer "$file.obj" $sky \
             --quiet --view "$file.view" --size "${SIZE}x$SIZE" --samples "$paths" \
@@ -135,7 +138,7 @@ while IFS='|' read -r name scene options by limits; do
         case " $by" in *" paths"*)
             paths=${by##*paths} paths=${paths#/} by=${by%%paths*}
             if [ -n "$CHECK" ]; then by=$(echo "$by" | sed 's/of=[^ ]*//')
-            else truth "$order" $((SAMPLES / ${paths:-1})); by=$by$ref; fi ;;
+            else truth $((SAMPLES / ${paths:-1})); by=$by$ref; fi ;;
         esac
         if [ "$options" = factors ]; then
             factors

@@ -5,7 +5,7 @@
 #     . tests/panel/scenes.sh
 #     make_scene FOLDER/NAME ORDER FUNCTION WORD...    NAME.obj, .mtl and perhaps .view
 
-for shape in paint quad sheet room block walk at view; do
+for shape in paint group quad sheet room block walk at view; do
     eval "$shape() { echo $shape \"\$@\"; }"
 done
 
@@ -460,15 +460,15 @@ plates() { # 1e-5 apart
 }
 
 back_to_back() { # E_LEFT E_RIGHT: sealed rooms that share a wall without thickness
-    paint left .6 0
-    room 0 0 0 1 1 1
-    paint left-lamp 0 "$1"
-    sheet z .95 - .4 .4 .6 .6
-    paint right .6 0
-    room 1 0 0 2 1 1
-    paint right-lamp 0 "$2"
-    sheet z .95 - 1.4 .4 1.6 .6
-    view 1.05 .08 .6 1.6 .6 .5 75
+    for side in "left 0 1 $1" "right 1 2 $2"; do
+        set -- $side
+        paint grey .5 0
+        group "$1"
+        room "$2" 0 0 "$3" 1 1
+        paint "$1-lamp" 0 "$4"
+        sheet z .85 - "$2.3" .3 "$2.7" .7
+    done
+    view 1.8 .8 .5 1 .2 .3 80
 }
 
 contact() { # a block on a floor, one that floats

@@ -1,6 +1,7 @@
 # Shapes, a line each, to OBJ: `awk -f shapes.awk -v name=NAME -v order=K`.
 #
 #   paint NAME RHO EMISSION       the faces that follow; a number, or three as r,g,b
+#   group NAME                    the same, of the paint there is, are another group
 #   quad X Y Z, four times        corners counter-clockwise as seen from the front
 #   sheet AXIS AT SIGN A B C D    the rectangle A..C x B..D across an axis, at AT on it;
 #     [HOLE, four numbers]        A is of the first of the other axes; the front looks
@@ -38,6 +39,7 @@ function face(n,   k, c, last, first, text, count) {
     if (count < 3) return
     faces[++face_count] = "f" text
     paint_of[face_count] = painted
+    group_of[face_count] = grouped
 }
 function put(k, x, y, z) { px[k] = x; py[k] = y; pz[k] = z }
 function across(axis, k, at, a, b) {
@@ -77,10 +79,11 @@ function bands(x,   part) {
 
 BEGIN { pi = atan2(0, -1) }
 $1 == "paint" {
-    painted = $2
+    painted = grouped = $2
     if (!known[$2]++)
         materials = materials "newmtl " $2 "\nKd " bands($3) "\nKe " bands($4) "\n"
 }
+$1 == "group" { grouped = $2 }
 $1 == "quad" {
     for (k = 1; k <= 4; k++)
         put(k, $(3 * k - 1), $(3 * k), $(3 * k + 1))
@@ -113,9 +116,9 @@ END {
     first = int(face_count / 3) * order
     for (k = 0; k < face_count; k++) {
         at = (first + k) % face_count + 1
-        if (paint_of[at] != last)
-            print "g " paint_of[at] "\nusemtl " paint_of[at] >(name ".obj")
-        last = paint_of[at]
+        head = "g " group_of[at] "\nusemtl " paint_of[at]
+        if (head != last) print head >(name ".obj")
+        last = head
         print faces[at] >(name ".obj")
     }
 }
