@@ -67,7 +67,7 @@ static inline double mean_radiosity(const struct solution *s, int32_t first,
 /* Smooth shading of the light of the links. */
 static inline struct shading *shade(const struct solution *s)
 {
-    return shading_create(s->solver->model.forest, NULL, NULL,
+    return shading_create(s->solver->model.forest, s->octree, NULL, NULL,
                           beyond_answer(s->solver)->outside);
 }
 

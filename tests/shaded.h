@@ -22,8 +22,9 @@ static inline struct stage stage_of(struct scene *scene)
 static inline void shade_stage(struct stage *stage, bool flat)
 {
     shading_destroy(stage->shading);
-    stage->shading = flat ? shading_create_flat(stage->forest)
-                          : shading_create(stage->forest, NULL, NULL, NULL);
+    stage->shading =
+        flat ? shading_create_flat(stage->forest)
+             : shading_create(stage->forest, stage->octree, NULL, NULL, NULL);
 }
 
 static inline void dismantle(struct stage *stage)

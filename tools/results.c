@@ -67,7 +67,7 @@ static struct shading *shade_leaves(struct run *run, bool rest)
     struct shading *shading =
         run->options.flat
             ? shading_create_flat(forest)
-            : shading_create(forest, rest ? answer->straight : NULL,
+            : shading_create(forest, run->octree, rest ? answer->straight : NULL,
                              rest ? answer->error : NULL, answer->outside);
     run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;

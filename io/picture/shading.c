@@ -1,9 +1,10 @@
 /* Smooth shading.
  *
  * A vertex is a corner of leaves. Leaves on one smooth surface (io/picture/surface.h)
- * have a common vertex where their corners are the same point. A vertex may lie inside
- * the edge of a leaf larger than its neighbours, too: a T-vertex. The value of a vertex
- * is the mean radiosity of the leaves around it.
+ * have a common vertex where their corners are the same point and nothing stands between
+ * them (io/picture/vertices.h). A vertex may lie inside the edge of a leaf larger than
+ * its neighbours, too: a T-vertex. The value of a vertex is the mean radiosity of the
+ * leaves around it.
  *
  * Means blur: where the light changes fast, as at a lamp, a leaf shows more or less light
  * than its own. So the deficit of each leaf, its radiosity less the shown mean, is added
@@ -41,103 +42,17 @@
 #include "io/picture/shading.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "io/picture/surface.h"
+#include "io/picture/vertices.h"
 #include "rad/beyond/gather/gather.h"
-
-/* --- vertices: a hash table from (point, surface) to a number --- */
-
-struct table {
-    struct vec3 *positions;  /* [count] scene units */
-    struct rgb *values;      /* [count] radiosity, W/m^2 */
-    int32_t *surfaces;       /* [count] */
-    int64_t count, capacity;
-    int32_t *slots;          /* [slot_count] a vertex, or -1 */
-    int64_t slot_count;      /* a power of two */
-};
-
-static uint64_t hash_point(struct vec3 x, int32_t surface)
-{
-    const double values[3] = {x.x + 0.0, x.y + 0.0, x.z + 0.0}; /* no negative zeros */
-    uint64_t hash = (uint64_t)(uint32_t)surface;
-    for (int k = 0; k < 3; k++) {
-        uint64_t bits;
-        memcpy(&bits, &values[k], sizeof bits);
-        hash = (hash ^ bits) * UINT64_C(0x9E3779B97F4A7C15);
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
-
-/* Returns the slot of the vertex, or the free slot for a new one. */
-static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surface)
-{
-    int64_t slot = (int64_t)(hash_point(x, surface) & (uint64_t)(table->slot_count - 1));
-    for (;; slot = (slot + 1) & (table->slot_count - 1)) {
-        int32_t vertex = table->slots[slot];
-        if (vertex < 0 || (table->surfaces[vertex] == surface &&
-                           vec3_is_equal(table->positions[vertex], x)))
-            return slot;
-    }
-}
-
-static void grow_slots(struct table *table)
-{
-    alloc_free(table->slots);
-    table->slot_count = table->slot_count ? 2 * table->slot_count : 1024;
-    table->slots = alloc_array((size_t)table->slot_count, sizeof *table->slots);
-    for (int64_t slot = 0; slot < table->slot_count; slot++)
-        table->slots[slot] = -1;
-    for (int64_t v = 0; v < table->count; v++)
-        table->slots[find_slot(table, table->positions[v], table->surfaces[v])] =
-            (int32_t)v;
-}
-
-static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface)
-{
-    int64_t needed = table->count + 1;
-    if (needed > INT32_MAX)
-        alloc_fail(SIZE_MAX);
-    if (needed > table->capacity) {
-        RESERVE(table->positions, &table->capacity, needed);
-        size_t room = (size_t)table->capacity;
-        table->values = alloc_resize(table->values, room, sizeof *table->values);
-        table->surfaces = alloc_resize(table->surfaces, room, sizeof *table->surfaces);
-    }
-    int32_t vertex = (int32_t)table->count++;
-    table->positions[vertex] = x;
-    table->values[vertex] = (struct rgb){{0.0, 0.0, 0.0}};
-    table->surfaces[vertex] = surface;
-    return vertex;
-}
-
-static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
-{
-    if (2 * (table->count + 1) > table->slot_count)
-        grow_slots(table);
-    int64_t slot = find_slot(table, x, surface);
-    if (table->slots[slot] < 0)
-        table->slots[slot] = append_vertex(table, x, surface);
-    return table->slots[slot];
-}
-
-/* Returns the vertex in the middle between two, or -1: none is there, or the middle
- * rounds to one of the two. */
-static int32_t vertex_between(const struct table *table, int32_t u, int32_t v)
-{
-    if (u < 0 || v < 0)
-        return -1;
-    struct vec3 x = vec3_middle(table->positions[u], table->positions[v]);
-    int32_t middle = table->slots[find_slot(table, x, table->surfaces[u])];
-    return middle == u || middle == v ? -1 : middle;
-}
 
 /* --- tiles of leaves with T-vertices --- */
 
 struct tile {
+    int32_t leaf;
     int32_t vertex[3];   /* at the corners, or -1 */
     struct rgb value[3]; /* W/m^2 */
 };
@@ -145,7 +60,7 @@ struct tile {
 static struct tile whole_leaf(const struct shading *shading, const struct rgb *values,
                               int32_t leaf)
 {
-    struct tile whole;
+    struct tile whole = {.leaf = leaf};
     for (int k = 0; k < 3; k++) {
         whole.vertex[k] = shading->corners[3 * (int64_t)leaf + k];
         whole.value[k] = values[whole.vertex[k]];
@@ -155,13 +70,15 @@ static struct tile whole_leaf(const struct shading *shading, const struct rgb *v
 
 /* Makes the tile between the middles of the edges: corner k is opposite to corner k of
  * the whole. Returns whether a middle is a T-vertex, and so the whole divided. */
-static bool find_inner(const struct table *table, const struct rgb *values,
+static bool find_inner(const struct vertices *vertices, const struct rgb *values,
                        const struct tile *whole, struct tile *inner)
 {
     bool divided = false;
+    inner->leaf = whole->leaf;
     for (int k = 0; k < 3; k++) {
         int a = (k + 1) % 3, b = (k + 2) % 3;
-        int32_t v = vertex_between(table, whole->vertex[a], whole->vertex[b]);
+        int32_t v =
+            vertices_between(vertices, whole->vertex[a], whole->vertex[b], whole->leaf);
         for (int c = 0; c < BANDS; c++)
             inner->value[k].band[c] =
                 v >= 0 ? values[v].band[c]
@@ -186,15 +103,15 @@ static struct tile outer_tile(const struct tile *whole, const struct tile *inner
 }
 
 /* Adds the mean of a tile times `share`. */
-static void add_mean(const struct table *table, const struct tile *tile, double share,
-                     struct rgb *mean)
+static void add_mean(const struct shading *shading, const struct tile *tile,
+                     double share, struct rgb *mean)
 {
     struct tile inner, outer;
-    if (find_inner(table, table->values, tile, &inner)) {
+    if (find_inner(shading->vertices, shading->values, tile, &inner)) {
         share *= 0.25;
         for (int k = 0; k < 3; k++) {
             outer = outer_tile(tile, &inner, k);
-            add_mean(table, &outer, share, mean);
+            add_mean(shading, &outer, share, mean);
         }
         tile = &inner;
     }
@@ -254,20 +171,22 @@ struct blend {
     double steep;              /* least difference over a steep leaf, over bands, W/m^2 */
 };
 
-/* Calls `visit` for each leaf, those of a sky last. */
+/* Calls `visit` for each leaf of a sky, or for each of the others. */
+static void for_leaves(struct blend *blend, bool sky,
+                       void (*visit)(struct blend *blend, int32_t leaf))
+{
+    const struct forest *forest = blend->shading->forest;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0 && !stop_is_asked(); leaf = forest_next_leaf(forest, leaf))
+        if (scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root) == sky)
+            visit(blend, leaf);
+}
+
 static void for_each_leaf(struct blend *blend,
                           void (*visit)(struct blend *blend, int32_t leaf))
 {
-    const struct forest *forest = blend->shading->forest;
-    for (int sky = 0; sky < 2; sky++) {
-        int32_t leaf = forest_next_leaf(forest, -1);
-        for (; leaf >= 0 && !stop_is_asked(); leaf = forest_next_leaf(forest, leaf))
-            if (scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root) ==
-                sky)
-                visit(blend, leaf);
-        if (blend->shading->own_count == 0)
-            blend->shading->own_count = blend->shading->table->count;
-    }
+    for_leaves(blend, false, visit);
+    for_leaves(blend, true, visit);
 }
 
 /* The open share of a leaf, 1; 0: counts as covered. */
@@ -283,11 +202,18 @@ static void add_flat_leaf(struct blend *blend, int32_t leaf)
     const struct forest *forest = shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
     for (int k = 0; k < 3; k++) {
-        int32_t v = append_vertex(shading->table, t.corner[k],
-                                  (int32_t)forest->patches[leaf].id.root);
+        int32_t v = vertices_append(shading->vertices, t.corner[k],
+                                    (int32_t)forest->patches[leaf].id.root);
         shading->corners[3 * (int64_t)leaf + k] = v;
-        shading->table->values[v] = forest->radiosity[leaf];
     }
+}
+
+static void light_flat_leaf(struct blend *blend, int32_t leaf)
+{
+    struct shading *shading = blend->shading;
+    for (int k = 0; k < 3; k++)
+        shading->values[shading->corners[3 * (int64_t)leaf + k]] =
+            shading->forest->radiosity[leaf];
 }
 
 static void add_leaf(struct blend *blend, int32_t leaf)
@@ -298,22 +224,22 @@ static void add_leaf(struct blend *blend, int32_t leaf)
         open_share(blend, leaf) > 0.0 ? SHADE_SMOOTH : SHADE_COVERED;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =
-            reach_vertex(blend->shading->table, t.corner[k],
-                         blend->surface[forest->patches[leaf].id.root]);
+            vertices_reach(blend->shading->vertices, t.corner[k],
+                           blend->surface[forest->patches[leaf].id.root]);
 }
 
 static void find_division(struct blend *blend, int32_t leaf)
 {
     struct shading *shading = blend->shading;
-    const struct rgb *values = shading->table->values;
+    const struct rgb *values = shading->values;
     struct tile whole = whole_leaf(shading, values, leaf), inner;
-    shading->divided[leaf] = find_inner(shading->table, values, &whole, &inner);
+    shading->divided[leaf] = find_inner(shading->vertices, values, &whole, &inner);
 }
 
 static bool is_steep(const struct blend *blend, int32_t leaf)
 {
     struct tile whole =
-        whole_leaf(blend->shading, blend->shading->table->values, leaf);
+        whole_leaf(blend->shading, blend->shading->values, leaf);
     double low = HUGE_VAL, high = 0.0;
     for (int k = 0; k < 3; k++) {
         low = fmin(low, rgb_sum(whole.value[k]));
@@ -326,10 +252,10 @@ static bool is_steep(const struct blend *blend, int32_t leaf)
 static struct rgb deficit_of(const struct blend *blend, int32_t leaf)
 {
     struct tile whole =
-        whole_leaf(blend->shading, blend->shading->table->values, leaf);
+        whole_leaf(blend->shading, blend->shading->values, leaf);
     struct rgb mean = {{0.0, 0.0, 0.0}};
     double largest = 0.0, share = 1.0, fraction = blend->fraction;
-    add_mean(blend->shading->table, &whole, 1.0, &mean);
+    add_mean(blend->shading, &whole, 1.0, &mean);
     struct rgb deficit = rgb_sub(blend->value, mean);
     for (int c = 0; c < BANDS; c++)
         largest = fmax(largest, fabs(deficit.band[c]));
@@ -361,14 +287,14 @@ static void give(struct blend *blend, int32_t vertex)
 
 /* Gives the value to the T-vertices in the edge from u to v. Recurses down to an edge
  * without, at most ID_MAX_LEVEL halvings. */
-static void give_inside(struct blend *blend, int32_t u, int32_t v)
+static void give_inside(struct blend *blend, int32_t leaf, int32_t u, int32_t v)
 {
-    int32_t middle = vertex_between(blend->shading->table, u, v);
+    int32_t middle = vertices_between(blend->shading->vertices, u, v, leaf);
     if (middle < 0)
         return;
     give(blend, middle);
-    give_inside(blend, u, middle);
-    give_inside(blend, middle, v);
+    give_inside(blend, leaf, u, middle);
+    give_inside(blend, leaf, middle, v);
 }
 
 static void give_leaf(struct blend *blend, int32_t leaf)
@@ -386,27 +312,27 @@ static void give_leaf(struct blend *blend, int32_t leaf)
     for (int k = 0; k < 3; k++)
         give(blend, corner[k]);
     for (int k = 0; k < 3 && blend->shading->divided[leaf]; k++)
-        give_inside(blend, corner[k], corner[(k + 1) % 3]);
+        give_inside(blend, leaf, corner[k], corner[(k + 1) % 3]);
 }
 
 /* Adds the mean deficit of the leaves around to each vertex. In corrections a vertex with
  * only covered or steep leaves around it keeps its value. */
 static void give_what_lacks(struct blend *blend)
 {
-    struct table *table = blend->shading->table;
-    blend->lacks = alloc_array((size_t)table->count, sizeof *blend->lacks);
-    for (int64_t v = 0; v < table->count; v++)
+    struct shading *shading = blend->shading;
+    blend->lacks = alloc_array((size_t)shading->vertex_count, sizeof *blend->lacks);
+    for (int64_t v = 0; v < shading->vertex_count; v++)
         for (int c = 0; c < BANDS; c++) {
             blend->lacks[v].least.band[c] = HUGE_VAL;
             blend->lacks[v].most.band[c] = -HUGE_VAL;
         }
     for_each_leaf(blend, give_leaf);
-    for (int64_t v = 0; v < table->count; v++) {
+    for (int64_t v = 0; v < shading->vertex_count; v++) {
         const struct lack *lack = &blend->lacks[v];
         bool open = lack->least.band[0] <= lack->most.band[0];
         double beyond = blend->less ? BEYOND : 1.0;
         for (int c = 0; c < BANDS && (open || blend->round == 0); c++) {
-            double *value = &table->values[v].band[c];
+            double *value = &shading->values[v].band[c];
             double low = open ? lack->least.band[c] / beyond : 0.0;
             double high = open ? lack->most.band[c] * beyond : HUGE_VAL;
             *value += lack->sum.band[c] / lack->weight;
@@ -433,22 +359,39 @@ static void blend_light(struct blend *blend, const struct rgb *less)
     }
 }
 
-/* The light of lamps is all light less the light without that of lamps. */
-static void blend_leaves(struct blend *blend, const struct rgb *less)
+/* Makes the vertices; those of a sky come last. `octree`: NULL: `add` shares none. */
+static void make_vertices(struct blend *blend, const struct octree *octree,
+                          void (*add)(struct blend *blend, int32_t leaf))
 {
-    struct table *table = blend->shading->table;
-    blend->steep = forest_mean_reflected(blend->shading->forest);
-    blend->surface = surface_of_roots(blend->shading->forest->scene);
-    for_each_leaf(blend, add_leaf);
+    struct shading *shading = blend->shading;
+    for_leaves(blend, false, add);
+    if (octree)
+        vertices_part(shading->vertices, shading->forest, octree, shading->corners);
+    shading->own_count = shading->vertices->count;
+    for_leaves(blend, true, add);
+    shading->positions = shading->vertices->positions;
+    shading->vertex_count = shading->vertices->count;
+    shading->values = alloc_array((size_t)shading->vertex_count, sizeof *shading->values);
+}
+
+/* The light of lamps is all light less the light without that of lamps. */
+static void blend_leaves(struct blend *blend, const struct octree *octree,
+                         const struct rgb *less)
+{
+    struct shading *shading = blend->shading;
+    blend->steep = forest_mean_reflected(shading->forest);
+    blend->surface = surface_of_roots(shading->forest->scene);
+    make_vertices(blend, octree, add_leaf);
     for_each_leaf(blend, find_division);
     blend_light(blend, NULL);
     if (less) {
-        blend->shading->lamps = table->values;
-        table->values = alloc_array((size_t)table->capacity, sizeof *table->values);
+        size_t count = (size_t)shading->vertex_count;
+        shading->lamps = shading->values;
+        shading->values = alloc_array(count, sizeof *shading->values);
         blend_light(blend, less);
     }
-    for (int64_t v = 0; v < table->count && less; v++)
-        blend->shading->lamps[v] = rgb_sub(blend->shading->lamps[v], table->values[v]);
+    for (int64_t v = 0; v < shading->vertex_count && less; v++)
+        shading->lamps[v] = rgb_sub(shading->lamps[v], shading->values[v]);
     alloc_free(blend->surface);
     for_each_leaf(blend, find_steep);
 }
@@ -461,45 +404,37 @@ static struct shading *allocate(const struct forest *forest)
     shading->corners = alloc_array(3 * patches, sizeof *shading->corners);
     shading->divided = alloc_array(patches, sizeof *shading->divided);
     shading->shades = alloc_array(patches, sizeof *shading->shades);
-    shading->table = alloc_array(1, sizeof *shading->table);
+    shading->vertices = alloc_array(1, sizeof *shading->vertices);
     return shading;
 }
 
-static struct shading *publish(struct shading *shading)
-{
-    shading->positions = shading->table->positions;
-    shading->values = shading->table->values;
-    shading->vertex_count = shading->table->count;
-    return shading;
-}
-
-struct shading *shading_create(const struct forest *forest, const struct rgb *less,
-                               const float *error, const float *outside)
+struct shading *shading_create(const struct forest *forest, const struct octree *octree,
+                               const struct rgb *less, const float *error,
+                               const float *outside)
 {
     struct blend blend = {.shading = allocate(forest), .error = error,
                           .outside = outside};
-    blend_leaves(&blend, less);
-    return publish(blend.shading);
+    blend_leaves(&blend, octree, less);
+    return blend.shading;
 }
 
 struct shading *shading_create_flat(const struct forest *forest)
 {
     struct blend blend = {.shading = allocate(forest)};
     blend.shading->flat = true;
-    for_each_leaf(&blend, add_flat_leaf);
-    return publish(blend.shading);
+    make_vertices(&blend, NULL, add_flat_leaf);
+    for_each_leaf(&blend, light_flat_leaf);
+    return blend.shading;
 }
 
 void shading_destroy(struct shading *shading)
 {
     if (!shading)
         return;
-    alloc_free(shading->table->positions);
-    alloc_free(shading->table->values);
+    vertices_free(shading->vertices);
+    alloc_free(shading->vertices);
+    alloc_free(shading->values);
     alloc_free(shading->lamps);
-    alloc_free(shading->table->surfaces);
-    alloc_free(shading->table->slots);
-    alloc_free(shading->table);
     alloc_free(shading->divided);
     alloc_free(shading->shades);
     alloc_free(shading->corners);
@@ -524,7 +459,7 @@ struct rgb shading_at(const struct shading *shading, const struct rgb *values,
         return values[shading->corners[3 * (int64_t)p]];
     struct tile tile = whole_leaf(shading, values, p), inner;
     for (int child = 0; child < 3 && shading->divided[p] &&
-                        find_inner(shading->table, values, &tile, &inner);) {
+                        find_inner(shading->vertices, values, &tile, &inner);) {
         child = triangle_child_at(w);
         tile = child < 3 ? outer_tile(&tile, &inner, child) : inner;
     }

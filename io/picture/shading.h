@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "octree/octree.h"
 #include "rad/patch.h"
 
 /* Where interpolation over a leaf holds. */
@@ -25,17 +26,19 @@ struct shading {
     int64_t own_count;           /* vertices before those of a sky */
     bool *divided;               /* [forest->count] leaf with T-vertices */
     uint8_t *shades;             /* [forest->count] enum shade of a leaf */
-    struct table *table;         /* finds vertices; owns positions and values */
+    struct vertices *vertices;   /* finds vertices; owns positions */
 };
 
-/* Prepares the smooth shading of a solution. `less`: [patches] radiosity to subtract,
- * W/m^2: by the light of lamps, with its shadows; or NULL. `error`: [patches] of the
- * radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only with `less`.
+/* Prepares the smooth shading of a solution. `octree`: over the scene's triangles: leaves
+ * with one of these between them share no vertex. `less`: [patches] radiosity to
+ * subtract, W/m^2: by the light of lamps, with its shadows; or NULL. `error`: [patches]
+ * of the radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only with `less`.
  * `outside`: [patches] share of a leaf outside of things on it and of narrow gaps, 1;
  * NULL: all leaves are open. Vertices are numbered in the canonical order of leaves: the
  * same on every rank. */
-struct shading *shading_create(const struct forest *forest, const struct rgb *less,
-                               const float *error, const float *outside);
+struct shading *shading_create(const struct forest *forest, const struct octree *octree,
+                               const struct rgb *less, const float *error,
+                               const float *outside);
 
 /* Prepares flat shading: each leaf has three vertices of its own with its constant. */
 struct shading *shading_create_flat(const struct forest *forest);

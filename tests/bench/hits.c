@@ -357,7 +357,7 @@ static double trace_picture(const struct bench *bench, const struct camera *came
 static void bench_picture(const struct bench *bench)
 {
     struct forest *forest = forest_create(bench->scene);
-    struct shading *shading = shading_create(forest, NULL, NULL, NULL);
+    struct shading *shading = shading_create(forest, bench->octree, NULL, NULL, NULL);
     struct renderer renderer = renderer_make(bench->octree, shading, NULL);
     struct camera camera =
         viewpoint_choose(bench->scene, bench->octree, NULL, WIDTH, HEIGHT);

@@ -65,7 +65,8 @@ static struct shading *shade(const struct measure *measure, const struct solutio
         return shading_create_flat(forest);
     if (measure->options.pixels)
         return NULL;
-    return shading_create(forest, answer->straight, answer->error, answer->outside);
+    return shading_create(forest, s->octree, answer->straight, answer->error,
+                          answer->outside);
 }
 
 /* --- the line --- */

@@ -54,7 +54,7 @@ static void make_world(void)
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] = 100.0 * random_unit(&random);
     }
-    shading = shading_create(forest, NULL, NULL, NULL);
+    shading = shading_create(forest, world.octree, NULL, NULL, NULL);
     for (int32_t root = 0; root < scene->input_count; root++)
         find_leaves(root);
 }

@@ -29,8 +29,8 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
 static struct shading *shade_rest(const struct solution *s)
 {
     const struct answer *answer = s->solver->beyond->answer;
-    return shading_create(s->solver->model.forest, answer->straight, answer->error,
-                          answer->outside);
+    return shading_create(s->solver->model.forest, s->octree, answer->straight,
+                          answer->error, answer->outside);
 }
 
 /* --- straight from a lamp --- */
@@ -354,6 +354,119 @@ static void test_smoothed_box(void)
     solution_free(&s);
 }
 
+/* --- walls without thickness --- */
+
+/* Two sealed rooms with so much wall between them, 0: none; a lamp is in the first. Their
+ * sides are of n x n cells; n = 0: both have one floor, one ceiling and two long walls in
+ * common. All is turned by this quaternion. */
+static struct scene *two_rooms(double wall, int n, const double turn[4])
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0.6, 0.3, 0.9), point(0, 0.4, 0), point(0.3, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    if (n > 0) {
+        soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), n, true);
+        soup_add_box(&soup, point(1 + wall, 0, 0), point(2 + wall, 1, 1), n, true);
+    } else {
+        soup_add_box(&soup, point(0, 0, 0), point(2, 1, 1), 1, true);
+        soup_add_quad(&soup, point(1, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
+        soup_add_quad(&soup, point(1, 0, 0), point(0, 0, 1), point(0, 1, 0), 1);
+    }
+    paint(&soup, 0.5, 0.0);
+    for (int64_t i = 0; i < soup.count; i++)
+        for (int k = 0; k < 3; k++)
+            soup.items[i].corner[k] = turned(soup.items[i].corner[k], turn);
+    return scene_of_soup(&soup);
+}
+
+/* What is seen of the rooms. */
+struct rooms_seen {
+    double dark;    /* brightest pixel of a picture from inside of the dark room */
+    double corner;  /* brightest vertex there */
+    double lit[24]; /* means of 6 x 4 blocks of 8 x 8 pixels in the lit room */
+};
+
+static struct rooms_seen see_rooms(struct scene *scene, const double turn[4],
+                                   const char *words)
+{
+    enum { WIDTH = 48, HEIGHT = 32 };
+    struct rooms_seen seen = {0.0, 0.0, {0.0}};
+    struct solution s = solve_scene(scene, words);
+    const struct forest *forest = s.solver->model.forest;
+    const struct answer *answer = s.solver->beyond->answer;
+    struct shading *shading = shade_rest(&s);
+    struct renderer renderer =
+        renderer_make(s.octree, shading, answer->straight ? answer->gather : NULL);
+    for (int dark = 0; dark < 2; dark++) {
+        struct camera camera = {
+            .eye = turned(dark ? point(1.95, 0.05, 0.6) : point(0.05, 0.05, 0.6), turn),
+            .at = turned(dark ? point(1.05, 0.6, 0.4) : point(0.95, 0.6, 0.4), turn),
+            .up = turned(point(0, 0, 1), turn), .fov = 75.0,
+            .width = WIDTH, .height = HEIGHT};
+        float *rgb = render_scanlines(&renderer, &camera, 1, 0, 1, NULL);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            double value = (double)rgb[3 * i];
+            if (dark)
+                seen.dark = fmax(seen.dark, value);
+            else
+                seen.lit[i / WIDTH / 8 * 6 + i % WIDTH / 8] += value / 64.0;
+        }
+        alloc_free(rgb);
+    }
+    struct vec3 along = turned(point(1, 0, 0), turn);
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
+        struct triangle t = forest_triangle(forest, leaf);
+        struct vec3 x = scene_to_input(s.scene, triangle_centroid(&t));
+        for (int k = 0; k < 3 && vec3_dot(x, along) > 1.0 + 1e-9; k++) {
+            int32_t vertex = shading->corners[3 * leaf + k];
+            seen.corner = fmax(seen.corner, shading->values[vertex].band[0]);
+        }
+    }
+    shading_destroy(shading);
+    solution_free(&s);
+    return seen;
+}
+
+/* The dark room is dark, at all pixels and vertices, also along the wall, and the lit one
+ * is as bright as with 10 cm of wall between. Turned, the ends of the wall's edges have
+ * rounded coordinates. */
+static void test_wall(const char *name, int n, const double turn[4], const char *words)
+{
+    struct rooms_seen thin = see_rooms(two_rooms(0.0, n, turn), turn, words);
+    struct rooms_seen thick = see_rooms(two_rooms(0.1, n, turn), turn, words);
+    double worst = 0.0;
+    for (int i = 0; i < 24; i++)
+        worst = fmax(worst, fabs(thin.lit[i] / thick.lit[i] - 1.0));
+    tap_ok(thin.dark == 0.0 && thin.corner == 0.0,
+           "%s, %s: no light behind the wall (pixels %.1e, vertices %.1e)", name, words,
+           thin.dark, thin.corner);
+    tap_ok(worst <= 0.015, "and before it blocks are off by %.4f at most", worst);
+}
+
+/* A wall that stands on the inside of a floor, along edges of its leaves. Links to leaves
+ * on both sides of it have left some light. */
+static void test_common_floor(const double turn[4], const char *words)
+{
+    struct rooms_seen seen = see_rooms(two_rooms(0.0, 0, turn), turn, words);
+    double most = 1e-4 * seen.lit[9];
+    tap_ok(seen.dark <= most && seen.corner <= most,
+           "a floor in common, %s: pixels %.1e, vertices %.1e behind the wall", words,
+           seen.dark, seen.corner);
+}
+
+static void test_walls(void)
+{
+    static const char *const words[] = {"--epsilon 1e-3",
+                                        "--epsilon 1e-3 --final-gather 0"};
+    static const double straight[4] = {1, 0, 0, 0}, turn[4] = {0.9, 0.2, -0.3, 0.25};
+    for (int k = 0; k < 2; k++) {
+        test_wall("straight", 1, straight, words[k]);
+        test_wall("turned", 2, turn, words[k]);
+        test_common_floor(straight, words[k]);
+    }
+}
+
 /* --- pixels --- */
 
 /* A bright square, moved under the pixels by parts of one: of a pixel that an upright or
@@ -431,6 +544,7 @@ int main(int argc, char **argv)
     test_column();
     test_bowl();
     test_smoothed_box();
+    test_walls();
     test_edges();
     test_order();
     comm_stop(&world_comm);

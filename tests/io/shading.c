@@ -307,7 +307,8 @@ static double reflected_error(struct stage *stage, double deviation, bool reflec
         error[p] = (float)(2.5 * deviation); /* as mpi/beyond/gather_error.c tells */
     shading_destroy(stage->shading);
     stage->shading =
-        shading_create(stage->forest, reflected ? lamps : NULL, error, NULL);
+        shading_create(stage->forest, stage->octree, reflected ? lamps : NULL, error,
+                       NULL);
     double square = 0.0;
     for (int64_t v = 0; v < stage->shading->vertex_count; v++) {
         double off = difference(stage->shading->values[v],
@@ -613,6 +614,40 @@ static void test_curved_edges(void)
     check_jump("normals differ on a plane", scene, 0.0);
 }
 
+/* The square, its corner 3 lifted, shown as smooth by normals, and a wall that stands on
+ * so much of the diagonal, from corner 0 on; or on none. */
+static struct scene *walled_square(double lift, double share)
+{
+    struct soup soup = {0};
+    struct vec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {1, 1, 0}, d = {0, 1, lift};
+    soup_add(&soup, (struct triangle){{a, b, c}});
+    soup_add(&soup, (struct triangle){{a, c, d}});
+    if (share > 0.0)
+        soup_add_quad(&soup, a, point(share, share, 0), point(0, 0, 0.3), 1);
+    paint(&soup, 0.0, 0.0);
+    struct scene *scene = scene_of_soup(&soup);
+    scene_add_normals(scene);
+    for (int i = 0; i < 6; i++)
+        scene->normals[i] = UP;
+    return scene;
+}
+
+/* A wall parts what it stands between, on flat, hollow and bulging surfaces; beyond its
+ * end, in the middle of an edge, the sides blend. */
+static void test_walls(void)
+{
+    static const double lifts[] = {0.0, 0.4, -0.4};
+    for (int k = 0; k < 3; k++) {
+        char name[80];
+        snprintf(name, sizeof name, "a corner lifted by %g, no wall", lifts[k]);
+        check_jump(name, walled_square(lifts[k], 0.0), 0.0);
+        snprintf(name, sizeof name, "a corner lifted by %g, a wall", lifts[k]);
+        check_jump(name, walled_square(lifts[k], 1.0), 1.0);
+        snprintf(name, sizeof name, "a corner lifted by %g, a wall of .3", lifts[k]);
+        check_jump(name, walled_square(lifts[k], 0.3), 0.0);
+    }
+}
+
 /* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), no other. */
 static void test_two_sided(void)
 {
@@ -636,7 +671,7 @@ static void test_two_sided(void)
 static void shade_outside(struct stage *stage, const float *outside)
 {
     shading_destroy(stage->shading);
-    stage->shading = shading_create(stage->forest, NULL, NULL, outside);
+    stage->shading = shading_create(stage->forest, stage->octree, NULL, NULL, outside);
 }
 
 /* A box stands on the square, whose leaves end at its feet; it is dark inside. Returns
@@ -832,6 +867,7 @@ int main(void)
     test_creases();
     test_materials_and_sides();
     test_curved_edges();
+    test_walls();
     test_two_sided();
     test_covered();
     test_partly_covered();

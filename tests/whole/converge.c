@@ -56,7 +56,8 @@ static struct result run(const struct comm *comm, const char *path,
         const struct forest *forest = s.solver->model.forest;
         struct answer *answer = s.solver->beyond->answer;
         struct shading *shading =
-            shading_create(forest, answer->straight, answer->error, answer->outside);
+            shading_create(forest, s.octree, answer->straight, answer->error,
+                           answer->outside);
         struct renderer renderer =
             renderer_make(s.octree, shading, answer->straight ? answer->gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;

@@ -154,7 +154,8 @@ static int64_t shade_flat(void)
 
 static int64_t shade_smooth(void)
 {
-    return count_vertices(shading_create(world.model.forest, NULL, NULL, NULL));
+    return count_vertices(
+        shading_create(world.model.forest, world.octree, NULL, NULL, NULL));
 }
 
 static int64_t render(void)
