@@ -222,7 +222,7 @@ static void test_file(const struct scene *scene, const struct truth *truth)
  * a sixth of the square of 1 %. */
 static void test_means(const struct comm *comm, const struct world *world)
 {
-    struct truth truth = truth_trace(comm, world->scene, world->octree, 64,
+    struct truth truth = truth_trace(comm, world->scene, world->octree, 32,
                                      (struct truth_paths){16384, 4096});
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
     struct sample *samples = alloc_array((size_t)truth.count, sizeof *samples);
@@ -255,7 +255,7 @@ int main(int argc, char **argv)
     struct world world = floor_and_light(false, false),
                  sheet = floor_and_light(true, false),
                  below = floor_and_light(false, true);
-    struct truth truth = truth_trace(&comm, world.scene, world.octree, 64,
+    struct truth truth = truth_trace(&comm, world.scene, world.octree, 32,
                                      (struct truth_paths){64, 16});
     test_elements(world.scene, &truth);
     test_file(world.scene, &truth);
