@@ -5,6 +5,8 @@
  * as often. */
 #include "rad/beyond/gather/inside.h"
 
+#include <math.h>
+
 #include "rad/beyond/sample.h"
 
 /* Faces crossed by a ray, at most. */
@@ -34,15 +36,15 @@ static struct crossing next_face(struct model *model, struct vec3 origin,
         vec3_scale(plane.normal, !hit.front && twin ? -1.0 : 1.0)};
 }
 
-/* True if another face lies back to back with a front. */
+/* True if another face lies back to back with a front: seen from behind, its front. */
 static bool is_backed(struct model *model, const struct crossing *front)
 {
-    struct vec3 step = vec3_scale(front->normal, FACES_APART);
-    int32_t own[2] = {front->input, -1}, other = -1;
-    return octree_blocks_segment(model->octree, vec3_add(front->at, step),
-                                 vec3_sub(front->at, step), own, &other,
-                                 &model->counts) &&
-           vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
+    struct vec3 behind = vec3_sub(front->at, vec3_scale(front->normal, FACES_APART));
+    struct octree_hit hit;
+    return octree_first_hit(model->octree, behind, front->normal, true, &hit,
+                            &model->counts) &&
+           fabs(plane_distance(&model->scene->planes[hit.triangle], front->at)) <=
+               FACES_APART;
 }
 
 /* True if a ray meeting the face leaves more things than it has entered, or meets first a

@@ -191,6 +191,29 @@ static void test_column(double height, double outside)
     trial_free(&g);
 }
 
+/* A pillar with all of its faces stands in a corner of a room: rays from the two walls
+ * there, from floor and ceiling begin inside, where they meet walls at its faces. */
+static void test_pillar(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0, 0, 0), point(0.4, 0.4, 1), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 256);
+    double level = 0.0, upright = 0.0;
+    for (int32_t i = 0; i < 12; i++) {
+        struct vec3 normal = scene_root_plane(g.s.scene, i).normal;
+        if (fabs(normal.z) > 0.5)
+            level += (double)g.gather->rows[i].outside / 4.0;
+        else if (normal.x + normal.y > 0.5)
+            upright += (double)g.gather->rows[i].outside / 4.0;
+    }
+    tap_ok(fabs(level - 0.84) < 0.01 && fabs(upright - 0.6) < 0.01,
+           "a pillar in a corner: %.3f of floor and ceiling are outside, %.3f of walls",
+           level, upright);
+    trial_free(&g);
+}
+
 /* A board hangs over a quarter of the floor of a room. Gaps below .031 are narrow for the
  * floor's two leaves. Near its rim rays leave the gap, of 1 % of the floor; edges where
  * walls meet are no gaps. */
@@ -267,6 +290,7 @@ int main(int argc, char **argv)
     test_covered();
     test_column(1.0, 0.96);
     test_column(0.9, 1.0);
+    test_pillar();
     test_board(0.01, 0.75);
     test_board(0.1, 1.0);
     test_lamp_that_faces_away();
