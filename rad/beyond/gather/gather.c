@@ -470,7 +470,7 @@ void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)
     }
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t parent = forest->patches[gather->order[i]].parent;
-        if (!(seen[i] > 0.0) && parent >= 0)
+        if (!(seen[i] > 0.0) && parent >= 0 && !is_cut(gather, parent))
             radiosity[i] = radiosity[gather->place[parent]];
     }
 }

@@ -89,8 +89,8 @@ void final_gather_add_near(const struct final_gather *gather, int64_t row,
                            const struct rgb *radiosity, int64_t *watts);
 
 /* The pull: inner patches get the mean of their leaves, by the visible shares of these,
- * and patches without a visible share get B of their parents: slopes between neighbours
- * do not know of the thing standing there. By place. */
+ * and patches without a visible share get B of their parents, unless a thing is across
+ * these: slopes between neighbours do not know of others. By place. */
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);
 
 /* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source
