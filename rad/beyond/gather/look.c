@@ -28,7 +28,7 @@ static double variance_in_common(const struct rgb *each, int rays, const struct 
 }
 
 /* True if a thing stands on the leaf or across it: just above the leaf something is
- * between its middle and a corner, or the middle of an edge. */
+ * between a corner and the middle of the edge opposite. */
 static bool is_cut(struct final_gather *gather, int32_t leaf)
 {
     static const double INSET = 0.99;
@@ -36,11 +36,13 @@ static bool is_cut(struct final_gather *gather, int32_t leaf)
     const struct vec3 *corner = facet.triangle.corner, normal = facet.plane.normal;
     struct vec3 middle = triangle_centroid(&facet.triangle);
     int32_t own[2] = {-1, -1}, guess = -1;
-    for (int k = 0; k < 6; k++) {
-        struct vec3 end = vec3_middle(corner[k % 3], corner[(k + k / 3) % 3]);
-        end = vec3_add(middle, vec3_scale(vec3_sub(end, middle), INSET));
-        if (octree_blocks_segment(gather->model->octree, point_above(middle, normal),
-                                  point_above(end, normal), own, &guess,
+    for (int k = 0; k < 3; k++) {
+        struct vec3 ends[2] = {corner[k],
+                               vec3_middle(corner[(k + 1) % 3], corner[(k + 2) % 3])};
+        for (int j = 0; j < 2; j++)
+            ends[j] = point_above(
+                vec3_add(middle, vec3_scale(vec3_sub(ends[j], middle), INSET)), normal);
+        if (octree_blocks_segment(gather->model->octree, ends[0], ends[1], own, &guess,
                                   &gather->view->counts))
             return true;
     }
