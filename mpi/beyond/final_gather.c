@@ -68,7 +68,7 @@ enum { TURNS_MOST = 40 };
  * residual by as much. */
 static const double LEFT = 0.03;
 
-/* A scene is closed if no more than this part of all rays escapes. */
+/* A scene is closed if no more than this part of all rays escapes, or of all light. */
 static const double CRACKS = 1e-5;
 
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
@@ -421,6 +421,30 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     return weights;
 }
 
+/* In a closed scene a leaf keeps all of its light; or none, if it faces out. */
+static void keep_light(struct gathering *g)
+{
+    for (int64_t i = 0; i < g->count && g->closed; i++)
+        g->covers[i].kept = g->covers[i].kept > 0.0f ? 1.0f : 0.0f;
+}
+
+/* Finds whether a scene is closed though rays escape: in a thing that touches walls and
+ * has no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
+ * across have rays of both sides, and tell nothing. */
+static bool find_closed(struct gathering *g, const struct rgb *b)
+{
+    double lost = 0.0, all = 0.0;
+    for (int64_t i = 0; i < g->count; i++) {
+        double kept = g->covers[i].kept, light = g->covers[i].bare * rgb_sum(b[i]);
+        all += light;
+        if (kept > 0.0 && !g->mesh->cut[g->leaves[i]])
+            lost += (1.0 - kept) * light;
+    }
+    g->closed = lost <= CRACKS * all;
+    keep_light(g);
+    return g->closed;
+}
+
 /* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
  * `b`, which becomes the answer but where `b` is below 0. `h` and `r`: buffers. */
 static struct bicgstab take_turn(struct gathering *g, const double *weights,
@@ -457,6 +481,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct rgb *h = b + count, *r = h + count, *answer = r + count;
     share_near(g);
     share_covers(g);
+    keep_light(g);
     for (int64_t i = 0; i < g->count; i++)
         answer[i] = b[i] = forest->radiosity[g->leaves[i]];
     struct bicgstab_end end = {
@@ -470,6 +495,8 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         if (turn == TURNS_MOST)
             end.steps = 0;
         done = take_turn(g, weights, end, b, h, r, answer);
+        if (!g->closed && find_closed(g, answer) && turn < TURNS_MOST)
+            done.steps = 1; /* with the balance */
     }
     alloc_free(weights);
     for (int c = 0; c < BANDS; c++)

@@ -402,6 +402,48 @@ static void test_light_is_kept(void)
     solution_free(&s);
 }
 
+/* A white room of 4 x 3 x 2.5 with a lamp, and a thing of a box's `faces`, 1 << axis on
+ * the low side, 8 << axis on the high one: all, or those not on walls. No light gets
+ * inside, where it would be lost on backs, so all is absorbed. */
+static void check_white(const char *name, struct vec3 low, struct vec3 high, int faces,
+                        const char *words)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(4, 3, 2.5), 1, true);
+    for (int k = 0; k < 6; k++) {
+        struct vec3 from = low, to = high;
+        *(k % 3 == 0 ? k < 3 ? &to.x : &from.x
+                     : k % 3 == 1 ? k < 3 ? &to.y : &from.y
+                                  : k < 3 ? &to.z : &from.z) =
+            vec3_axis(k < 3 ? low : high, k % 3);
+        if (faces >> k & 1)
+            soup_add_rectangle(&soup, from, to, k < 3 ? -1 : 1);
+    }
+    paint(&soup, 0.998, 0.0);
+    soup_add_box(&soup, point(1.5, 1, 2.39), point(2.3, 1.6, 2.45), 1, false);
+    paint(&soup, 0.998, 10.0);
+    struct solution s = solve_soup(&soup, words);
+    double off = s.stats.absorbed_power / s.stats.emitted_power - 1.0;
+    tap_ok(fabs(off) <= 1e-6, "a white room with %s: %+.5f of its light made (%s)", name,
+           off, words);
+    solution_free(&s);
+}
+
+static void test_white_rooms(void)
+{
+    enum { ALL = 077, NO_X0 = 076, NO_Y0 = 075, NO_Z0 = 073, NO_X1 = 067, NO_Y1 = 057,
+           NO_Z1 = 037 };
+    const char *few = "--epsilon 1e-3 --final-gather 64";
+    check_white("a step", point(3, 0, 0), point(4, 3, 0.2), ALL, few);
+    check_white("a step without hidden faces", point(3, 0, 0), point(4, 3, 0.2),
+                NO_X1 & NO_Y0 & NO_Y1 & NO_Z0, few);
+    check_white("a pillar in a corner", point(0, 0, 0), point(0.7, 0.5, 2.5), ALL, few);
+    check_white("a pillar without hidden faces", point(0, 0, 0), point(0.7, 0.5, 2.5),
+                NO_X0 & NO_Y0 & NO_Z0 & NO_Z1, few);
+    check_white("a beam without hidden faces", point(0.5, 0, 2.1), point(0.9, 3, 2.5),
+                NO_Y0 & NO_Y1 & NO_Z1, few);
+}
+
 /* A box that shines hangs from the ceiling of a closed room, its top in that plane. What
  * the top emits leaves the room, so three quarters of the power is absorbed. */
 static void test_light_out(void)
@@ -510,6 +552,7 @@ int main(int argc, char **argv)
     test_touching(0.99);
     test_pierced();
     test_light_is_kept();
+    test_white_rooms();
     test_light_out();
     test_convergence();
     comm_stop(&world_comm);
