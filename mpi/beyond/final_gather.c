@@ -34,10 +34,11 @@
  * In a closed scene as much light arrives as leaves, on bare surfaces (on which no other
  * face lies). Rows sum to 1, but columns have the noise of rays and the errors of leaves
  * seen in part, so W loses or makes some thousandths of the light: with rho .99 a
- * hundredfold would be missing in the end. The loss is made up for within W, in
- * proportion to the irradiances of the turn before: with these, h, the areas a, the kept
- * shares k of the light leaving, 1 but where a leaf faces out of the scene, and
- * W' = W + h (k a - W^T a)^T / (a^T h),
+ * hundredfold would be missing in the end. The loss is made up for within W, where rows
+ * are least sure: in proportion to s, the irradiances of the turn before over the numbers
+ * of rays. (A black end of a pipe has few, and shall not tell how bright the wall is.)
+ * With the areas a, the kept shares k of the light leaving, 1 but where a leaf faces out
+ * of the scene, and W' = W + s (k a - W^T a)^T / (a^T s),
  *
  *     a^T W' = (k a)^T,
  *
@@ -453,7 +454,9 @@ static struct bicgstab take_turn(struct gathering *g, const double *weights,
 {
     size_t count = (size_t)g->count;
     irradiances(g, answer, true, h);
-    memcpy(g->spread, h, count * sizeof *h);
+    for (size_t i = 0; i < count; i++)
+        for (int c = 0; c < BANDS; c++)
+            g->spread[i].band[c] = h[i].band[c] / g->mesh->rays[i];
     irradiances(g, b, true, h);
     set_radiosities(g, h, r);
     for (size_t i = 0; i < count; i++) /* what b leaves of the equation, E + rho H - b */

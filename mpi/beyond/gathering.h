@@ -36,7 +36,7 @@ struct gathering {
     struct too_near *near;  /* [near_count], once numbered */
     int64_t near_count;
     bool closed;            /* hardly any ray of any rank, or no light, escapes */
-    struct rgb *spread;     /* [count] how missing light is spread, W/m^2 */
+    struct rgb *spread;     /* [count] how missing light is spread, W/m^2 a ray */
     struct rgb missing;     /* part of the light last leaving that did not arrive, 1 */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
