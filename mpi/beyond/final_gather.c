@@ -69,7 +69,8 @@ enum { TURNS_MOST = 40 };
  * residual by as much. */
 static const double LEFT = 0.03;
 
-/* A scene is closed if no more than this part of all rays escapes, or of all light. */
+/* A scene is closed if no more than this part of all rays escapes, or light that is no
+ * more than this part of what is absorbed. */
 static const double CRACKS = 1e-5;
 
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
@@ -431,17 +432,22 @@ static void keep_light(struct gathering *g)
 
 /* Finds whether a scene is closed though rays escape: in a thing that touches walls and
  * has no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
- * across have rays of both sides, and tell nothing. */
+ * across have rays of both sides, and tell nothing. Lost light is held against what is
+ * absorbed: in a white room it is missing at every reflection. */
 static bool find_closed(struct gathering *g, const struct rgb *b)
 {
-    double lost = 0.0, all = 0.0;
+    const struct forest *forest = g->solver->model.forest;
+    double lost = 0.0, absorbed = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
-        double kept = g->covers[i].kept, light = g->covers[i].bare * rgb_sum(b[i]);
-        all += light;
-        if (kept > 0.0 && !g->mesh->cut[g->leaves[i]])
-            lost += (1.0 - kept) * light;
+        int32_t leaf = g->leaves[i];
+        struct rgb rho = forest_material(forest, leaf)->reflectance;
+        double kept = g->covers[i].kept, bare = g->covers[i].bare;
+        for (int c = 0; c < BANDS; c++)
+            absorbed += bare * (1.0 - rho.band[c]) * b[i].band[c];
+        if (kept > 0.0 && !g->mesh->cut[leaf])
+            lost += (1.0 - kept) * bare * rgb_sum(b[i]);
     }
-    g->closed = lost <= CRACKS * all;
+    g->closed = lost <= CRACKS * absorbed;
     keep_light(g);
     return g->closed;
 }
