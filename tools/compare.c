@@ -163,7 +163,7 @@ bool solution_write(const struct solution_mesh *solution, const struct rgb *map,
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, 3 * solution->count, solution->count);
+    mesh_write_header(&output, 3 * solution->count, solution->count, false);
     solution_write_header(&output, solution->scene, false);
     for (int64_t i = 0; i < 3 * solution->count; i++) {
         struct vec3 x = solution->leaves[i / 3].triangle.corner[i % 3];

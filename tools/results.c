@@ -4,6 +4,8 @@
  * one. */
 #include "tools/results.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
 #include "io/picture/imagefile.h"
 #include "io/picture/mesh.h"
@@ -12,6 +14,7 @@
 #include "io/picture/vtk.h"
 #include "mpi/picture.h"
 #include "rad/pushpull.h"
+#include "tools/irradiance.h"
 #include "tools/dark.h"
 #include "tools/input.h"
 #include "tools/show.h"
@@ -34,22 +37,27 @@ static void write_pictures(struct run *run, int view, float *picture)
     }
 }
 
-/* Writes the meshes. On rank 0 alone. */
-static void write_meshes(struct run *run, const struct shading *shading)
+/* Writes the meshes. On rank 0 alone. `irradiance_at`: H at the shading's vertices. */
+static void write_meshes(struct run *run, const struct shading *shading,
+                         const struct irradiance *irradiance,
+                         const struct rgb *irradiance_at)
 {
     int64_t count;
     float *colours = mesh_colours(run->solver->model.forest, &count);
     struct tone tone = tone_choose(run->options.exposure, colours, count);
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
-        answer->error, answer->straight, answer->outside,
-        {answer->straight, answer->straight ? answer->gather->aims->lamps->least : 0.0,
-         answer->gather ? answer->gather->mean : 0.0}};
+        .error = answer->error, .straight = answer->straight,
+        .outside = answer->outside, .irradiance = irradiance->light,
+        .irradiance_error = irradiance->error, .irradiance_at = irradiance_at,
+        .lamps = {answer->straight,
+                  answer->straight ? answer->gather->aims->lamps->least : 0.0,
+                  answer->gather ? answer->gather->mean : 0.0}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         struct error error = {.code = EXIT_DONE};
         if (target->format == FORMAT_VTK)
-            vtk_write(shading, answer->error, target->path, &error);
+            vtk_write(shading, &solved, target->path, &error);
         else if (target->format == FORMAT_PLY)
             mesh_write(shading, &tone, &solved, target->path, &error);
         run_lose(run, &error);
@@ -155,14 +163,32 @@ static bool show_pictures(struct run *run)
     return good;
 }
 
+/* Puts other values of leaves in the place of their radiosities. Returns the values there
+ * before. */
+static struct rgb *show_instead(struct run *run, struct rgb *values)
+{
+    struct rgb *before = run->solver->model.forest->radiosity;
+    run->solver->model.forest->radiosity = values;
+    return before;
+}
+
 /* Collective. */
 static bool show_meshes(struct run *run)
 {
     double start = comm_seconds();
+    struct irradiance irradiance = irradiance_make(run);
+    struct rgb *radiosity = show_instead(run, irradiance.light);
     struct shading *shading = shade_leaves(run, false);
-    if (run_goes_on(run) && run->comm.rank == 0)
-        write_meshes(run, shading);
+    struct rgb *at = alloc_array((size_t)shading->own_count, sizeof *at);
+    memcpy(at, shading->values, (size_t)shading->own_count * sizeof *at);
+    show_instead(run, radiosity);
     shading_destroy(shading);
+    shading = shade_leaves(run, false);
+    if (run_goes_on(run) && run->comm.rank == 0)
+        write_meshes(run, shading, &irradiance, at);
+    shading_destroy(shading);
+    alloc_free(at);
+    irradiance_free(&irradiance);
     run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
     return run_agree(run);
 }

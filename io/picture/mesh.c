@@ -23,7 +23,11 @@ int64_t mesh_count(const struct forest *forest)
     return count;
 }
 
-void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
+static const char IRRADIANCE[] = "property float irradiance_r\nproperty float "
+                                 "irradiance_g\nproperty float irradiance_b\n";
+
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces,
+                       bool irradiance)
 {
     fprintf(output->file,
             "ply\nformat binary_little_endian 1.0\n"
@@ -32,17 +36,17 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
             "property float x\nproperty float y\nproperty float z\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
             "property float radiosity_r\nproperty float radiosity_g\n"
-            "property float radiosity_b\n"
+            "property float radiosity_b\n%s"
             "element face %lld\n"
             "property list uchar int vertex_indices\n"
             "property float radiosity_r\nproperty float radiosity_g\n"
             "property float radiosity_b\n"
             "property uint root\nproperty uint hierarchy\n",
-            (long long)vertices, (long long)faces);
+            (long long)vertices, irradiance ? IRRADIANCE : "", (long long)faces);
 }
 
 static void write_vertices(struct output *output, const struct shading *shading,
-                           const struct tone *tone)
+                           const struct tone *tone, const struct rgb *irradiance)
 {
     for (int64_t v = 0; v < shading->own_count && !stop_is_asked(); v++) {
         struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
@@ -53,6 +57,8 @@ static void write_vertices(struct output *output, const struct shading *shading,
             putc(tone_encode(tone, shading->values[v].band[c]), output->file);
         for (int c = 0; c < BANDS; c++)
             output_float(output, (float)shading->values[v].band[c]);
+        for (int c = 0; c < BANDS && irradiance; c++)
+            output_float(output, (float)irradiance[v].band[c]);
     }
 }
 
@@ -74,6 +80,10 @@ static void write_face(struct output *output, const struct shading *shading,
                                      answer->straight[leaf].band[c]));
     if (answer->outside)
         output_float(output, answer->outside[leaf]);
+    for (int c = 0; c < BANDS && answer->irradiance; c++)
+        output_float(output, (float)answer->irradiance[leaf].band[c]);
+    if (answer->irradiance_error)
+        output_float(output, answer->irradiance_error[leaf]);
 }
 
 bool mesh_write(const struct shading *shading, const struct tone *tone,
@@ -86,15 +96,18 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, shading->own_count, mesh_count(forest));
+    mesh_write_header(&output, shading->own_count, mesh_count(forest),
+                      answer->irradiance != NULL);
     output_write_note(&output, "comment ");
-    fprintf(output.file, "%s%s%s", answer->error ? "property float error\n" : "",
+    fprintf(output.file, "%s%s%s%s%s", answer->error ? "property float error\n" : "",
             answer->straight ? "property float rest_r\nproperty float rest_g\n"
                                "property float rest_b\n"
                              : "",
-            answer->outside ? "property float outside\n" : "");
+            answer->outside ? "property float outside\n" : "",
+            answer->irradiance ? IRRADIANCE : "",
+            answer->irradiance_error ? "property float irradiance_error\n" : "");
     solution_write_header(&output, scene, answer->lamps.known);
-    write_vertices(&output, shading, tone);
+    write_vertices(&output, shading, tone, answer->irradiance_at);
     int32_t leaf = mesh_next_leaf(forest, -1);
     for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
         write_face(&output, shading, answer, leaf);

@@ -108,8 +108,14 @@ static void test_vtk(bool with_errors)
 {
     struct error error = {EXIT_DONE, ""};
     int points = (int)shading->vertex_count, n = leaf_count;
-    bool right[8] = {vtk_write(shading, with_errors ? errors : NULL, PATH, &error),
-                     true, true, true, true, true, true, true};
+    struct mesh_answer answer = {.error = with_errors ? errors : NULL};
+    if (with_errors) { /* any numbers: those of others */
+        answer.irradiance = forest->radiosity;
+        answer.irradiance_error = shares;
+        answer.irradiance_at = shading->values;
+    }
+    bool right[8] = {vtk_write(shading, &answer, PATH, &error), true, true, true, true,
+                     true, true, true};
     size = load(PATH, file, SIZE_MOST);
     at = 0;
     bool texts = text_is("# vtk DataFile Version 3.0\nradiosity in W/m^2, made by phr\n"
@@ -125,7 +131,7 @@ static void test_vtk(bool with_errors)
     texts = text_is("\nCELL_TYPES %d\n", n, 0) && texts;
     for (int i = 0; i < n; i++)
         right[2] = next_number(true) == 5 && right[2];
-    texts = text_is("\nCELL_DATA %d\nFIELD cells %d\n", n, with_errors ? 5 : 4) && texts;
+    texts = text_is("\nCELL_DATA %d\nFIELD cells %d\n", n, with_errors ? 7 : 4) && texts;
     texts = text_is("radiosity 3 %d float\n", n, 0) && texts;
     for (int i = 0; i < n; i++)
         right[3] = floats_are(forest->radiosity[leaves[i]].band, 3, true) && right[3];
@@ -143,9 +149,22 @@ static void test_vtk(bool with_errors)
         texts = text_is("\nerror 1 %d float\n", n, 0) && texts;
     for (int i = 0; i < n && with_errors; i++)
         right[7] = floats_are((double[]){(double)errors[leaves[i]]}, 1, true) && right[7];
-    texts = text_is("\nPOINT_DATA %d\nFIELD points 1\n", points, 0) && texts;
+    if (with_errors)
+        texts = text_is("\nirradiance 3 %d float\n", n, 0) && texts;
+    for (int i = 0; i < n && with_errors; i++)
+        right[7] = floats_are(forest->radiosity[leaves[i]].band, 3, true) && right[7];
+    if (with_errors)
+        texts = text_is("\nirradiance_error 1 %d float\n", n, 0) && texts;
+    for (int i = 0; i < n && with_errors; i++)
+        right[7] = floats_are((double[]){(double)shares[leaves[i]]}, 1, true) && right[7];
+    texts = text_is("\nPOINT_DATA %d\nFIELD points %d\n", points,
+                    with_errors ? 2 : 1) && texts;
     texts = text_is("radiosity 3 %d float\n", points, 0) && texts;
     for (int v = 0; v < points; v++)
+        right[1] = floats_are(shading->values[v].band, 3, true) && right[1];
+    if (with_errors)
+        texts = text_is("\nirradiance 3 %d float\n", points, 0) && texts;
+    for (int v = 0; v < points && with_errors; v++)
         right[1] = floats_are(shading->values[v].band, 3, true) && right[1];
     texts = text_is("\n", 0, 0) && texts && at == size;
     tap_ok(right[0] && texts, "VTK, %s errors: the lines between arrays",
@@ -160,7 +179,10 @@ static void test_ply(void)
     struct error error = {EXIT_DONE, ""};
     struct tone tone = tone_make(0.01);
     int points = (int)shading->vertex_count;
-    struct mesh_answer answer = {.error = errors, .outside = shares};
+    struct mesh_answer answer = {.error = errors, .outside = shares,
+                                 .irradiance = forest->radiosity,
+                                 .irradiance_error = errors,
+                                 .irradiance_at = shading->values};
     bool written = mesh_write(shading, &tone, &answer, PATH, &error);
     size = load(PATH, file, SIZE_MOST);
     at = 0;
@@ -171,7 +193,9 @@ static void test_ply(void)
                    "property uchar red\nproperty uchar green\nproperty uchar blue\n",
                    0, 0) && head;
     head = text_is("property float radiosity_r\nproperty float radiosity_g\n"
-                   "property float radiosity_b\nelement face %d\n",
+                   "property float radiosity_b\nproperty float irradiance_r\n"
+                   "property float irradiance_g\nproperty float irradiance_b\n"
+                   "element face %d\n",
                    leaf_count, 0) && head;
     tap_ok(written && head, "PLY: the lines about vertices");
     while (at < size && !text_is("end_header\n", 0, 0))
@@ -181,10 +205,11 @@ static void test_ply(void)
         same = point_is(v, false) && same;
         for (int c = 0; c < BANDS; c++)
             same = file[at++] == tone_encode(&tone, shading->values[v].band[c]) && same;
-        light = floats_are(shading->values[v].band, 3, false) && light;
+        for (int twice = 0; twice < 2; twice++)
+            light = floats_are(shading->values[v].band, 3, false) && light;
     }
     tap_ok(same, "vertices and their colours");
-    tap_ok(light, "the radiosity of vertices");
+    tap_ok(light, "radiosity and irradiance of vertices");
     for (int i = 0; i < leaf_count; i++) {
         struct patch_id id = forest->patches[leaves[i]].id;
         faces = file[at++] == 3 && faces;
@@ -194,6 +219,8 @@ static void test_ply(void)
         faces = next_number(false) == id.hierarchy && faces;
         faces = floats_are((double[]){(double)errors[leaves[i]]}, 1, false) && faces;
         faces = floats_are((double[]){(double)shares[leaves[i]]}, 1, false) && faces;
+        faces = floats_are(forest->radiosity[leaves[i]].band, 3, false) && faces;
+        faces = floats_are((double[]){(double)errors[leaves[i]]}, 1, false) && faces;
     }
     tap_ok(faces && at < size, "faces; more follows");
 }
@@ -206,7 +233,8 @@ int main(void)
     test_vtk(true);
     test_ply();
     struct error error = {EXIT_DONE, ""};
-    tap_ok(!vtk_write(shading, errors, "build/mesh_test_absent/a.vtk", &error) &&
+    struct mesh_answer none = {.error = NULL};
+    tap_ok(!vtk_write(shading, &none, "build/mesh_test_absent/a.vtk", &error) &&
                error.code == EXIT_FAILED,
            "VTK into a missing folder");
     remove(PATH);

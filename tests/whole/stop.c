@@ -213,7 +213,8 @@ static int64_t write_mesh(void)
 
 static int64_t write_vtk(void)
 {
-    return look_at_output(vtk_write(shading, NULL, WRITTEN, &error));
+    struct mesh_answer none = {.error = NULL};
+    return look_at_output(vtk_write(shading, &none, WRITTEN, &error));
 }
 
 static const struct phase {

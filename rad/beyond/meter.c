@@ -1,0 +1,191 @@
+/* A light meter.
+ *
+ * H at a point is a plain row of form factors times the radiosities of the solution:
+ * cosine rays find leaves, each with its mean B. Lamps, small and bright, would be noise
+ * in it: the factor of each lamp is exact (Lambert), and segments to points on it tell
+ * its visible share, weighted by the kernel of each. A sky, which is large, is left to
+ * the rays: where nothing is in the way of it, its light has no noise.
+ *
+ * The rays are BATCHES sequences of their own, so the scatter of the answers by one
+ * sequence is that of the mean by chance. The errors of the leaves that are met come on
+ * top: their mean, for the leaves of a wall may be off together.
+ *
+ * The rows of the final gather (rad/beyond/gather/row.c) take a tenth of the rays, as
+ * leaves of a region share what they learn of its lamps; a point in the air has no
+ * region. */
+#include "rad/beyond/meter.h"
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/lambert.h"
+#include "geom/stop.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+
+enum { BATCHES = 8 };
+
+/* Of the mean of BATCHES: 95 % of a t distribution of 7 degrees of freedom. */
+static const double BOUND = 2.365;
+
+/* Height of a point above its surface, relative to the box of all but a sky: points have
+ * six digits. */
+static const double HEIGHT = 1e-6;
+
+/* The part of a segment within which nothing is in the way. */
+static const double WHOLE = 1.0 - 1e-9;
+
+struct meter meter_make(const struct forest *forest, const struct octree *octree,
+                        const float *error)
+{
+    const struct scene *scene = forest->scene;
+    struct meter meter = {.forest = forest, .octree = octree, .error = error};
+    int32_t roots = scene_root_count(scene);
+    struct vec3 low = {0.0, 0.0, 0.0}, high = low;
+    bool none = true;
+    meter.counts = alloc_array(1, sizeof *meter.counts);
+    meter.lamps = alloc_array((size_t)roots, sizeof *meter.lamps);
+    for (int32_t root = 0; root < roots; root++) {
+        if (!(scene_root_own_area(scene, root) > 0.0))
+            continue;
+        struct triangle t = scene_root_triangle(scene, root);
+        low = none ? triangle_low(&t) : vec3_least(low, triangle_low(&t));
+        high = none ? triangle_high(&t) : vec3_most(high, triangle_high(&t));
+        none = false;
+        if (material_emits(scene_root_material(scene, root)))
+            meter.lamps[meter.lamp_count++] = root;
+    }
+    meter.shares = alloc_array((size_t)meter.lamp_count, sizeof *meter.shares);
+    meter.height = HEIGHT * vec3_length(vec3_sub(high, low));
+    return meter;
+}
+
+void meter_free(struct meter *meter)
+{
+    alloc_free(meter->lamps);
+    alloc_free(meter->shares);
+    alloc_free(meter->counts);
+}
+
+/* The distance of a root's plane along a ray, in units of its direction. */
+static double distance_to(const struct scene *scene, int32_t root, struct vec3 from,
+                          struct vec3 direction)
+{
+    struct plane plane = scene_root_plane(scene, root);
+    double fall = -vec3_dot(plane.normal, direction);
+    return fall > 0.0 ? plane_distance(&plane, from) / fall : 0.0;
+}
+
+/* True if nothing is in the way from x to y, on a lamp. */
+static bool sees(const struct meter *meter, struct vec3 x, struct vec3 y, int32_t lamp)
+{
+    const struct scene *scene = meter->forest->scene;
+    struct vec3 d = vec3_sub(y, x);
+    struct octree_hit hit;
+    if (!octree_first_hit(meter->octree, x, d, false, &hit, meter->counts))
+        return true;
+    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    return root == lamp || (root >= 0 && distance_to(scene, root, x, d) > WHOLE);
+}
+
+/* Returns the visible share of a lamp, by `count` segments. */
+static double visible_share(const struct meter *meter, struct vec3 x, struct vec3 normal,
+                            int32_t lamp, int count, uint64_t seed)
+{
+    struct triangle t = scene_root_triangle(meter->forest->scene, lamp);
+    struct vec3 facing = scene_root_plane(meter->forest->scene, lamp).normal;
+    struct sequence sequence = sequence_start(hash_mix(seed) + (uint64_t)lamp);
+    double seen = 0.0, all = 0.0, u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < count; i++) {
+        sequence_point(&sequence, (uint32_t)i, u);
+        struct vec3 y = triangle_of_square(&t, u[0], u[1]);
+        double kernel = point_kernel(x, normal, y, facing);
+        all += kernel;
+        if (kernel > 0.0 && sees(meter, x, y, lamp))
+            seen += kernel;
+    }
+    return all > 0.0 ? seen / all : 0.0;
+}
+
+/* The leaf of a root at a point of it. */
+static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 at)
+{
+    struct triangle t = scene_root_triangle(forest->scene, root);
+    double weight[3];
+    int32_t patch = root;
+    triangle_weights(&t, at, weight);
+    while (!patch_is_leaf(&forest->patches[patch]))
+        patch = forest->patches[patch].children + triangle_child_at(weight);
+    return patch;
+}
+
+/* Returns the light of all but lamps by a sequence of rays; adds the error of the leaves
+ * met to `*error`. */
+static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec3 normal,
+                            int rays, uint64_t seed, double *error)
+{
+    const struct forest *forest = meter->forest;
+    const struct scene *scene = forest->scene;
+    struct sequence sequence = sequence_start(seed);
+    struct vec3 along = direction_along(normal);
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    double u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < rays; i++) {
+        struct octree_hit hit;
+        sequence_point(&sequence, (uint32_t)i, u);
+        struct vec3 d = cosine_direction(normal, along, u[0], u[1]);
+        if (!octree_first_hit(meter->octree, x, d, false, &hit, meter->counts))
+            continue;
+        int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+        if (root < 0)
+            continue;
+        double far = distance_to(scene, root, x, d);
+        int32_t leaf = leaf_at(forest, root, vec3_add(x, vec3_scale(d, far)));
+        rgb_add(&sum, 1.0 / rays, forest->radiosity[leaf]);
+        if (!scene_is_sky(scene, root))
+            rgb_add(&sum, -1.0 / rays, scene_root_material(scene, root)->emission);
+        *error += meter->error ? (double)meter->error[leaf] / rays : 0.0;
+    }
+    return sum;
+}
+
+struct reading meter_read(const struct meter *meter, struct vec3 x, struct vec3 normal,
+                          int rays, uint64_t seed)
+{
+    const struct scene *scene = meter->forest->scene;
+    int each = (rays + BATCHES - 1) / BATCHES;
+    struct reading reading = {.error = 0.0};
+    struct rgb square = {{0.0, 0.0, 0.0}};
+    double all = 0.0, off = 0.0, variance = 0.0;
+    x = vec3_add(x, vec3_scale(normal, meter->height));
+    for (int64_t k = 0; k < meter->lamp_count; k++) {
+        struct triangle t = scene_root_triangle(scene, meter->lamps[k]);
+        meter->shares[k] = point_triangle_factor(x, normal, &t);
+        all += meter->shares[k] *
+               rgb_sum(scene_root_material(scene, meter->lamps[k])->emission);
+    }
+    for (int batch = 0; batch < BATCHES && !stop_is_asked(); batch++) {
+        uint64_t own = hash_mix(seed * BATCHES + (uint64_t)batch);
+        struct rgb light = read_rest(meter, x, normal, each, own, &off), lamps = {{0.0}};
+        for (int64_t k = 0; k < meter->lamp_count; k++) {
+            struct rgb e = scene_root_material(scene, meter->lamps[k])->emission;
+            double factor = meter->shares[k], part = factor * rgb_sum(e) / all;
+            if (!(factor > 0.0))
+                continue;
+            factor *= visible_share(meter, x, normal, meter->lamps[k],
+                                    1 + (int)(part * each), own);
+            rgb_add(&lamps, factor, e);
+        }
+        rgb_add(&light, 1.0, lamps);
+        rgb_add(&reading.lamps, 1.0 / BATCHES, lamps);
+        rgb_add(&reading.irradiance, 1.0 / BATCHES, light);
+        for (int c = 0; c < BANDS; c++)
+            square.band[c] += light.band[c] * light.band[c] / BATCHES;
+    }
+    for (int c = 0; c < BANDS; c++) {
+        double mean = reading.irradiance.band[c];
+        variance = real_max(variance, square.band[c] - mean * mean);
+    }
+    off /= BATCHES;
+    reading.error = sqrt(BOUND * BOUND * variance / (BATCHES - 1) + off * off);
+    return reading;
+}

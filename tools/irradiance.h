@@ -1,0 +1,28 @@
+/* Irradiance of leaves and points. */
+#ifndef TOOLS_IRRADIANCE_H
+#define TOOLS_IRRADIANCE_H
+
+#include "rad/beyond/meter.h"
+#include "tools/run.h"
+
+/* Of the leaves. */
+struct irradiance {
+    struct rgb *light;    /* [patches] H, W/m^2 */
+    struct rgb *straight; /* [patches] the part straight from lamps, W/m^2 */
+    float *error;         /* [patches] bound on the error of a band of H, for 95 % of
+                             leaves, W/m^2; NULL: not known */
+};
+
+/* Collective. Finds H of all leaves, on all ranks: where all bands are reflected it is
+ * (B - E) / rho, else a meter's, at four points of the leaf. */
+struct irradiance irradiance_make(struct run *run);
+void irradiance_free(struct irradiance *irradiance);
+
+/* Collective. Reads a meter `count` times, each on one rank: `read` fills in `floats`
+ * floats for one. Returns [count * floats] on rank 0, to be freed; NULL on the others. */
+float *irradiance_deal(struct run *run, int64_t count, int floats,
+                       void (*read)(const struct meter *meter, const void *context,
+                                    int64_t item, float *floats),
+                       const void *context);
+
+#endif
