@@ -140,7 +140,7 @@ void dark_warn(struct run *run, int view, const float *picture)
     enum show show = run->options.show;
     int counts[SIGHTS] = {0}, things = 0;
     char reason[400];
-    if (show != SHOW_LIGHT && show != SHOW_MESH)
+    if (show > SHOW_MESH)
         return;
     for (int i = 0; i < GRID * GRID; i++) {
         int x = (int)((i % GRID + 0.5) / GRID * camera->width);

@@ -29,11 +29,11 @@ static void add(struct names *names, const char *const *list)
         names->name[names->count++] = *list;
 }
 
-/* True if the pictures show light, a mesh or links: patches drawn over light. */
+/* True if the pictures show light, also by false colours, a mesh or links: patches drawn
+ * over light. */
 static bool shows_light(const struct options *options)
 {
-    return options->show == SHOW_LIGHT || options->show == SHOW_MESH ||
-           options->show == SHOW_LINKS;
+    return options->show <= SHOW_MESH || options->show == SHOW_LINKS;
 }
 
 /* True if predicted costs move links, or are told. */

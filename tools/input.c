@@ -228,7 +228,7 @@ static void take_up(struct run *run, const char *exporter)
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
-    struct obj_repairs read = {.mean_of = texture_mean};
+    struct obj_repairs read = {.names = &run->materials, .mean_of = texture_mean};
     struct scene_repairs prepared = {0};
     if (!read_file(run, &read) || !stop_check(error))
         return false;
@@ -270,7 +270,9 @@ static void read_input(struct run *run)
 {
     signals_end_calls(true);
     if (files_check(&run->options, &run->error) &&
-        files_probe(&run->options, &run->error) && read_cameras(run) && read_scene(run)) {
+        files_probe(&run->options, &run->error) && read_cameras(run) &&
+        (!run->options.at || points_read(&run->points, run->options.at, &run->error)) &&
+        read_scene(run)) {
         run_set_note(run);
         show_check(run);
     }

@@ -5,6 +5,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "mpi/picture.h"
+#include "rad/pushpull.h"
 
 enum { LEAF_RAYS = 64, LEAF_POINTS = 4, LEAF_FLOATS = 2 * BANDS + 1 };
 
@@ -45,7 +46,7 @@ static void read_leaf(const struct meter *meter, const void *context, int64_t it
     struct vec3 normal = scene_root_plane(forest->scene, (int32_t)id.root).normal;
     for (int k = 0; k < LEAF_POINTS; k++) {
         struct triangle child = triangle_child(&t, k);
-        struct reading reading =
+        struct metered reading =
             meter_read(meter, triangle_centroid(&child), normal, LEAF_RAYS,
                        hash_mix(id_number(id)) + (uint64_t)k);
         for (int c = 0; c < BANDS; c++) {
@@ -68,7 +69,8 @@ static bool take_reflected(const struct run *run, int32_t leaf, struct irradianc
         if (!(rho > 0.0))
             return false;
         most = real_max(most, rho);
-        found->light[leaf].band[c] = real_max(0.0, b.band[c] - m->emission.band[c]) / rho;
+        double reflected = real_max(0.0, b.band[c] - m->emission.band[c]);
+        found->forest.radiosity[leaf].band[c] = reflected / rho;
         found->straight[leaf].band[c] =
             answer->straight ? answer->straight[leaf].band[c] / rho : 0.0;
     }
@@ -77,19 +79,34 @@ static bool take_reflected(const struct run *run, int32_t leaf, struct irradianc
     return true;
 }
 
-struct irradiance irradiance_make(struct run *run)
+/* The scene and the forest of H, which is 0. */
+static void make_white(const struct forest *forest, struct irradiance *found)
+{
+    size_t patches = (size_t)forest->count;
+    size_t materials = (size_t)forest->scene->material_count;
+    found->scene = *forest->scene;
+    found->scene.materials = alloc_array(materials, sizeof *found->scene.materials);
+    for (size_t i = 0; i < materials; i++)
+        found->scene.materials[i].reflectance = forest->scene->materials[i].reflectance;
+    found->forest = *forest;
+    found->forest.scene = &found->scene;
+    found->forest.radiosity = alloc_array(patches, sizeof *found->forest.radiosity);
+    found->straight = alloc_array(patches, sizeof *found->straight);
+    found->error = NULL;
+}
+
+void irradiance_make(struct run *run, struct irradiance *found)
 {
     const struct forest *forest = run->solver->model.forest;
     size_t patches = (size_t)forest->count;
-    struct irradiance found = {alloc_array(patches, sizeof *found.light),
-                               alloc_array(patches, sizeof *found.straight), NULL};
     struct unknown unknown = {forest, alloc_array(patches, sizeof *unknown.leaves), 0};
+    make_white(forest, found);
     if (beyond_answer(run->solver)->error)
-        found.error = alloc_array(patches, sizeof *found.error);
+        found->error = alloc_array(patches, sizeof *found->error);
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
         if (!scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root) &&
-            !take_reflected(run, leaf, &found))
+            !take_reflected(run, leaf, found))
             unknown.leaves[unknown.count++] = leaf;
     float *read = irradiance_deal(run, unknown.count, LEAF_FLOATS, read_leaf, &unknown);
     size_t bytes = (size_t)unknown.count * LEAF_FLOATS * sizeof *read;
@@ -100,20 +117,21 @@ struct irradiance irradiance_make(struct run *run)
         const float *from = read + i * LEAF_FLOATS;
         leaf = unknown.leaves[i];
         for (int c = 0; c < BANDS; c++) {
-            found.light[leaf].band[c] = (double)from[c];
-            found.straight[leaf].band[c] = (double)from[BANDS + c];
+            found->forest.radiosity[leaf].band[c] = (double)from[c];
+            found->straight[leaf].band[c] = (double)from[BANDS + c];
         }
-        if (found.error)
-            found.error[leaf] = from[2 * BANDS];
+        if (found->error)
+            found->error[leaf] = from[2 * BANDS];
     }
+    forest_average(&found->forest);
     alloc_free(read);
     alloc_free(unknown.leaves);
-    return found;
 }
 
 void irradiance_free(struct irradiance *irradiance)
 {
-    alloc_free(irradiance->light);
+    alloc_free(irradiance->scene.materials);
+    alloc_free(irradiance->forest.radiosity);
     alloc_free(irradiance->straight);
     alloc_free(irradiance->error);
 }

@@ -5,9 +5,10 @@
 #include "rad/beyond/meter.h"
 #include "tools/run.h"
 
-/* Of the leaves. */
+/* Of the leaves: H is B of a forest in which nothing emits. */
 struct irradiance {
-    struct rgb *light;    /* [patches] H, W/m^2 */
+    struct forest forest; /* the run's, with H as radiosity */
+    struct scene scene;   /* the run's, without emission */
     struct rgb *straight; /* [patches] the part straight from lamps, W/m^2 */
     float *error;         /* [patches] bound on the error of a band of H, for 95 % of
                              leaves, W/m^2; NULL: not known */
@@ -15,7 +16,7 @@ struct irradiance {
 
 /* Collective. Finds H of all leaves, on all ranks: where all bands are reflected it is
  * (B - E) / rho, else a meter's, at four points of the leaf. */
-struct irradiance irradiance_make(struct run *run);
+void irradiance_make(struct run *run, struct irradiance *found);
 void irradiance_free(struct irradiance *irradiance);
 
 /* Collective. Reads a meter `count` times, each on one rank: `read` fills in `floats`

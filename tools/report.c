@@ -116,7 +116,8 @@ static void print_stored(struct run *run)
 static bool writes_nothing(const struct options *options)
 {
     return options->output_count == 0 && !options->dump && !options->stats &&
-           !options->checkpoint && !options->save_links;
+           !options->checkpoint && !options->save_links && !options->at &&
+           !options->report;
 }
 
 bool report_summary(struct run *run)

@@ -10,6 +10,7 @@
 #include "io/picture/imagefile.h"
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
+#include "io/picture/scale.h"
 #include "io/picture/viewpoint.h"
 #include "io/picture/vtk.h"
 #include "mpi/picture.h"
@@ -18,8 +19,22 @@
 #include "tools/dark.h"
 #include "tools/input.h"
 #include "tools/show.h"
+#include "tools/table.h"
 
-/* Writes the pictures of a view. On rank 0 alone. */
+/* Turns a picture into false colours, and says with which scale. */
+static void colour_falsely(struct run *run, struct image *image)
+{
+    const struct options *options = &run->options;
+    struct scale scale =
+        scale_choose(image, options->exposure, options->lux, options->lines);
+    run_say(run, "legend: %s from 0, dark, to %.6g %s, yellow", options->show ==
+            SHOW_IRRADIANCE ? "irradiance" : "radiosity", scale.top,
+            options->lux ? "lux" : "W/m^2");
+    scale_paint(&scale, image);
+}
+
+/* Writes the pictures of a view: those of bytes last, as these may have false colours. On
+ * rank 0 alone. */
 static void write_pictures(struct run *run, int view, float *picture)
 {
     const struct options *options = &run->options;
@@ -27,12 +42,21 @@ static void write_pictures(struct run *run, int view, float *picture)
     struct image image = {camera->width, camera->height, picture};
     struct tone tone = tone_choose(options->exposure, picture,
                                    (int64_t)camera->width * camera->height);
+    bool falsely = options->show == SHOW_RADIOSITY || options->show == SHOW_IRRADIANCE;
     dark_warn(run, view, picture);
-    for (int i = 0; i < options->output_count; i++) {
-        const struct target *target = &options->outputs[i];
+    for (int i = 0; i < 2 * options->output_count; i++) {
+        bool has_tone = i >= options->output_count;
+        const struct target *target = &options->outputs[i % options->output_count];
         struct error error = {.code = EXIT_DONE};
-        if (target->view == view && !format_is_mesh(target->format))
-            image_write(&image, &tone, target, &error);
+        if (target->view != view || format_is_mesh(target->format) ||
+            format_has_tone(target->format) != has_tone)
+            continue;
+        if (falsely && has_tone) {
+            colour_falsely(run, &image);
+            tone = tone_make(1.0);
+            falsely = false;
+        }
+        image_write(&image, &tone, target, &error);
         run_lose(run, &error);
     }
 }
@@ -48,7 +72,7 @@ static void write_meshes(struct run *run, const struct shading *shading,
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         .error = answer->error, .straight = answer->straight,
-        .outside = answer->outside, .irradiance = irradiance->light,
+        .outside = answer->outside, .irradiance = irradiance->forest.radiosity,
         .irradiance_error = irradiance->error, .irradiance_at = irradiance_at,
         .lamps = {answer->straight,
                   answer->straight ? answer->gather->aims->lamps->least : 0.0,
@@ -65,18 +89,22 @@ static void write_meshes(struct run *run, const struct shading *shading,
     alloc_free(colours);
 }
 
-/* Prepares the shading of all leaves, with `rest` without the light straight from
- * lamps. */
-static struct shading *shade_leaves(struct run *run, bool rest)
+/* Prepares the shading of all leaves, or of their H unless NULL; with `rest` without the
+ * light straight from lamps. */
+static struct shading *shade_leaves(struct run *run, const struct irradiance *irradiance,
+                                    bool rest)
 {
-    const struct forest *forest = run->solver->model.forest;
+    const struct forest *forest =
+        irradiance ? &irradiance->forest : run->solver->model.forest;
     const struct answer *answer = beyond_answer(run->solver);
+    const struct rgb *straight = irradiance ? irradiance->straight : answer->straight;
+    const float *error = irradiance ? irradiance->error : answer->error;
     double start = comm_seconds();
     struct shading *shading =
         run->options.flat
             ? shading_create_flat(forest)
-            : shading_create(forest, run->octree, rest ? answer->straight : NULL,
-                             rest ? answer->error : NULL, answer->outside);
+            : shading_create(forest, run->octree, rest ? straight : NULL,
+                             rest ? error : NULL, answer->outside);
     run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
@@ -136,15 +164,22 @@ static bool show_pictures(struct run *run)
         place_camera(run);
     struct answer *answer = run->solver->beyond ? run->solver->beyond->answer : NULL;
     struct rgb *colours = show_colours(run);
+    bool white = run->options.show == SHOW_IRRADIANCE;
+    struct irradiance irradiance;
+    if (white)
+        irradiance_make(run, &irradiance);
     bool gathers = answer && (answer->straight || run->options.pixels) &&
                    !run->options.flat && !colours;
     struct shading *shading = NULL;
     if (colours)
         shading = show_shading(run, colours);
     else if (!run->options.pixels)
-        shading = shade_leaves(run, gathers);
+        shading = shade_leaves(run, white ? &irradiance : NULL, gathers);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? answer->gather : NULL);
+    renderer.irradiance = white;
+    if (white)
+        renderer.mean = forest_mean_reflected(&irradiance.forest);
     if (run->options.pixels && renderer.rays < run->options.pixel_rays)
         renderer.rays = run->options.pixel_rays;
     if (gathers)
@@ -160,34 +195,23 @@ static bool show_pictures(struct run *run)
     model->estimating = estimating;
     shading_destroy(shading);
     alloc_free(colours);
+    if (white)
+        irradiance_free(&irradiance);
     return good;
-}
-
-/* Puts other values of leaves in the place of their radiosities. Returns the values there
- * before. */
-static struct rgb *show_instead(struct run *run, struct rgb *values)
-{
-    struct rgb *before = run->solver->model.forest->radiosity;
-    run->solver->model.forest->radiosity = values;
-    return before;
 }
 
 /* Collective. */
 static bool show_meshes(struct run *run)
 {
     double start = comm_seconds();
-    struct irradiance irradiance = irradiance_make(run);
-    struct rgb *radiosity = show_instead(run, irradiance.light);
-    struct shading *shading = shade_leaves(run, false);
-    struct rgb *at = alloc_array((size_t)shading->own_count, sizeof *at);
-    memcpy(at, shading->values, (size_t)shading->own_count * sizeof *at);
-    show_instead(run, radiosity);
-    shading_destroy(shading);
-    shading = shade_leaves(run, false);
+    struct irradiance irradiance;
+    irradiance_make(run, &irradiance);
+    struct shading *white = shade_leaves(run, &irradiance, false);
+    struct shading *shading = shade_leaves(run, NULL, false);
     if (run_goes_on(run) && run->comm.rank == 0)
-        write_meshes(run, shading, &irradiance, at);
+        write_meshes(run, shading, &irradiance, white->values);
     shading_destroy(shading);
-    alloc_free(at);
+    shading_destroy(white);
     irradiance_free(&irradiance);
     run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
     return run_agree(run);
@@ -216,8 +240,8 @@ bool results_show(struct run *run)
     bool pictures = options_show(options, 0), meshes = false;
     for (int i = 0; i < options->output_count; i++)
         meshes = meshes || format_is_mesh(options->outputs[i].format);
-    if (!pictures && !meshes)
-        return true;
-    beyond_free_vectors(run->solver); /* pictures and meshes take as much */
-    return (!meshes || show_meshes(run)) && (!pictures || show_pictures(run));
+    if (pictures || meshes)
+        beyond_free_vectors(run->solver); /* pictures and meshes take as much */
+    return (!meshes || show_meshes(run)) && (!pictures || show_pictures(run)) &&
+           table_print_points(run) && table_write_report(run);
 }

@@ -1,4 +1,4 @@
-/* The solution as pictures and meshes. */
+/* The solution as pictures, meshes and tables. */
 #ifndef TOOLS_RESULTS_H
 #define TOOLS_RESULTS_H
 

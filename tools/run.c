@@ -97,6 +97,8 @@ void run_free(struct run *run)
         solution_mesh_free(run->stored);
     alloc_free(run->stored);
     alloc_free(run->cameras);
+    text_names_free(&run->materials);
+    points_free(&run->points);
     if (run->block.data)
         node_block_destroy(&run->block);
     options_free(&run->options);

@@ -7,6 +7,7 @@
 #include "io/run/options.h"
 #include "io/run/progress.h"
 #include "io/scene/camera.h"
+#include "io/scene/points.h"
 #include "mpi/beyond/beyond.h"
 #include "mpi/node.h"
 
@@ -18,6 +19,8 @@ struct run {
     const char *up_reason;         /* of the axis that is up, unless said; or NULL */
     char missing[200];             /* where the lamps may be: in a library or material not
                                       found, on rank 0; or "" */
+    struct text_names materials;   /* names of the scene's, on rank 0; or fewer */
+    struct points points;          /* of --at, on rank 0 */
     struct octree *octree;
     struct solution_mesh *stored;  /* the scene's file is a stored solution; else NULL */
     struct node_block block;       /* memory of scene and octree */

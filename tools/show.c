@@ -424,7 +424,7 @@ static bool overlay_links(struct run *run, const struct camera *camera,
 bool show_overlay(struct run *run, const struct camera *camera, float *picture)
 {
     enum show show = run->options.show;
-    if (show == SHOW_LIGHT || show == SHOW_ERROR)
+    if (show <= SHOW_IRRADIANCE || show == SHOW_ERROR)
         return true;
     int32_t *leaves = leaves_of_pixels(run, camera);
     bool good = run_goes_on(run); /* a signal leaves holes in it */

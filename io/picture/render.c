@@ -52,7 +52,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 {
     int rays = gather ? gather->model->criterion.final_gather : 0;
     double mean = gather ? forest_mean_reflected(gather->model->forest) : 0.0;
-    return (struct renderer){octree, shading, gather, rays, mean};
+    return (struct renderer){octree, shading, gather, rays, false, mean};
 }
 
 /* --- visible points --- */
@@ -136,7 +136,11 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     const struct shading *shading = renderer->shading;
     struct final_gather *gather = renderer->gather;
     const struct scene *scene = gather->model->scene;
-    const struct material *m = scene_root_material(scene, view->roots[0]);
+    static const struct material WHITE = {{{1.0, 1.0, 1.0}}, {{0.0, 0.0, 0.0}}};
+    const struct material *m =
+        renderer->irradiance ? &WHITE : scene_root_material(scene, view->roots[0]);
+    if (renderer->irradiance && scene_is_sky(scene, view->roots[0]))
+        return;
     struct facade facade = facade_make(scene, view->roots[0]);
     struct vec3 middle = {0.0, 0.0, 0.0};
     for (int i = 0; i < count; i++) {

@@ -14,6 +14,7 @@ struct renderer {
     struct final_gather *gather;   /* direct light, and all where `shading` does not
                                       hold; without `shading`, all; or NULL */
     int rays;                      /* from a leaf; without `shading` for a pixel */
+    bool irradiance;               /* H in place of B: as if all were white */
     double mean;                   /* radiosity of all reflecting surfaces, W/m^2 */
 };
 

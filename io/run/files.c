@@ -10,7 +10,8 @@
  * such paths. */
 static const char *written_path(const struct options *options, int i, int *count)
 {
-    const char *others[] = {options->stats, options->save_links, options->checkpoint};
+    const char *others[] = {options->stats, options->save_links, options->checkpoint,
+                            options->report};
     int last = (int)(sizeof others / sizeof others[0]);
     *count = options->output_count + last;
     return i < options->output_count ? options->outputs[i].path
@@ -63,19 +64,31 @@ static bool check_outputs(const struct options *options, struct error *error)
     return true;
 }
 
+/* Returns the number of outputs to the standard output. */
+static int files_to_stdout(const struct options *options)
+{
+    int count = 1, outputs = options->at != NULL; /* its lines go there */
+    for (int i = 0; i < count; i++) {
+        const char *path = written_path(options, i, &count);
+        outputs += path && place_is_stdout(path);
+    }
+    return outputs;
+}
+
 bool files_check(const struct options *options, struct error *error)
 {
-    const char *others[] = {options->scene, options->load_links, options->resume};
+    const char *others[] = {options->scene, options->load_links, options->resume,
+                            options->at};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (others[i] && !files_check_input(options, others[i], error))
             return false;
     for (int i = 0; i < options->view_count; i++)
         if (!files_check_input(options, options->views[i], error))
             return false;
-    if (options->dump && files_take_stdout(options))
-        return error_set(error, EXIT_USAGE,
-                         "--dump and an output to the standard output "
-                         "do not go together");
+    int outputs = files_to_stdout(options);
+    if ((options->dump || options->at) && outputs > (options->at && !options->dump))
+        return error_set(error, EXIT_USAGE, "%s and an output to the standard output "
+                         "do not go together", options->dump ? "--dump" : "--at");
     return check_formats(options, error) && check_outputs(options, error);
 }
 
@@ -92,11 +105,5 @@ bool files_probe(const struct options *options, struct error *error)
 
 bool files_take_stdout(const struct options *options)
 {
-    int count = 1;
-    bool take = false;
-    for (int i = 0; i < count; i++) {
-        const char *path = written_path(options, i, &count);
-        take = take || (path && place_is_stdout(path));
-    }
-    return take;
+    return files_to_stdout(options) > 0;
 }

@@ -13,7 +13,8 @@
 #define PHR_FORMAT 1 /* of --stats and of notes in outputs; a change breaks readers */
 
 /* The contents of pictures, in the order of --show. */
-enum show { SHOW_LIGHT, SHOW_MESH, SHOW_OWNER, SHOW_LEVEL, SHOW_ERROR, SHOW_LINKS };
+enum show { SHOW_LIGHT, SHOW_RADIOSITY, SHOW_IRRADIANCE, SHOW_MESH, SHOW_OWNER,
+            SHOW_LEVEL, SHOW_ERROR, SHOW_LINKS };
 
 /* What --dump prints. */
 enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
@@ -35,6 +36,8 @@ struct options {
     const char *load_links;   /* path of the link cache to read, or NULL */
     const char *checkpoint;   /* path of the checkpoint to write, or NULL */
     const char *resume;       /* path of the checkpoint to read, or NULL */
+    const char *at;           /* path of points to read, or NULL */
+    const char *report;       /* path of the table of objects to write, or NULL */
     int every;                /* passes from checkpoint to checkpoint, at least 1 */
     int64_t memory;           /* bytes for links and patches; 0: 80 % of the machine's */
     int width, height;        /* of --size; 0: those of the view */
@@ -52,6 +55,8 @@ struct options {
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     const char *help_on;      /* option of --help=OPTION, or NULL */
+    bool lux;                 /* numbers of light in lux, else W/m^2 */
+    int lines;                /* of equal values in false colours; 0: none */
     bool flat, quiet, verbose, help, version;
     bool unlit;               /* viewfactors': no light is asked for, no lamp is needed */
     struct criterion criterion;

@@ -388,6 +388,9 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         const struct mtl_entry *entry = &entries[i];
         number[i] = count;
         count += entry->used;
+        if (entry->used && repairs->names)
+            text_names_add(repairs->names, i > NO_MATERIAL
+                               ? reader->materials.names.name[i] : "(none)");
         if (entry->used && !entry->defined) {
             text_missing_add(&repairs->materials, reader->materials.names.name[i]);
             if (repairs->materials.count == 1)
@@ -505,7 +508,8 @@ static const char *format_of(const struct source *source)
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error)
 {
-    *repairs = (struct obj_repairs){repairs->files, repairs->mean_of, .textured = 0};
+    *repairs = (struct obj_repairs){repairs->files, repairs->names, repairs->mean_of,
+                                    .textured = 0};
     struct obj_reader reader = {.repairs = repairs, .error = error};
     bool good = text_of_source(&reader.text, source, error);
     if (good && reader.text.bytes[reader.text.position] == '#')

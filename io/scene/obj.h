@@ -19,9 +19,11 @@
 #include "io/scene/mtl.h"
 #include "io/scene/text.h"
 
-/* Counts of repairs, for one warning per kind. Starts as {0}, or with the first two. */
+/* Counts of repairs, for one warning per kind. Starts as {0}, or with the first three. */
 struct obj_repairs {
     struct text_names *files;      /* where paths of libraries and pictures go, or NULL */
+    struct text_names *names;      /* where names of the scene's materials go, in order,
+                                      while these have one; or NULL */
     mtl_mean *mean_of;             /* finds the colour of a picture; NULL: of none */
     char exporter[80];             /* the first line, if it is a comment; or "" */
     struct text_missing materials; /* names without a definition: neutral grey instead */

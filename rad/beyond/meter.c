@@ -22,17 +22,17 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-enum { BATCHES = 8 };
+enum { BATCHES = 8, TRIES = 64 /* for a point of a lamp above the horizon */ };
 
 /* Of the mean of BATCHES: 95 % of a t distribution of 7 degrees of freedom. */
 static const double BOUND = 2.365;
 
 /* Height of a point above its surface, relative to the box of all but a sky: points have
  * six digits. */
-static const double HEIGHT = 1e-6;
+static const double HEIGHT = 0x1p-22;
 
 /* The part of a segment within which nothing is in the way. */
-static const double WHOLE = 1.0 - 1e-9;
+static const double WHOLE = 1.0 - 1e-6;
 
 struct meter meter_make(const struct forest *forest, const struct octree *octree,
                         const float *error)
@@ -95,10 +95,12 @@ static double visible_share(const struct meter *meter, struct vec3 x, struct vec
     struct vec3 facing = scene_root_plane(meter->forest->scene, lamp).normal;
     struct sequence sequence = sequence_start(hash_mix(seed) + (uint64_t)lamp);
     double seen = 0.0, all = 0.0, u[SEQUENCE_DIMENSIONS];
-    for (int i = 0; i < count; i++) {
+    int above = 0; /* the horizon */
+    for (int i = 0; i < TRIES * count && above < count; i++) {
         sequence_point(&sequence, (uint32_t)i, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);
         double kernel = point_kernel(x, normal, y, facing);
+        above += kernel > 0.0;
         all += kernel;
         if (kernel > 0.0 && sees(meter, x, y, lamp))
             seen += kernel;
@@ -118,10 +120,10 @@ static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 at
     return patch;
 }
 
-/* Returns the light of all but lamps by a sequence of rays; adds the error of the leaves
- * met to `*error`. */
+/* Returns the light of all but lamps by a sequence of rays. Adds the sky's part to
+ * `*lamps`, and the error of the leaves met to `*error`. */
 static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec3 normal,
-                            int rays, uint64_t seed, double *error)
+                            int rays, uint64_t seed, struct rgb *lamps, double *error)
 {
     const struct forest *forest = meter->forest;
     const struct scene *scene = forest->scene;
@@ -141,19 +143,20 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
         double far = distance_to(scene, root, x, d);
         int32_t leaf = leaf_at(forest, root, vec3_add(x, vec3_scale(d, far)));
         rgb_add(&sum, 1.0 / rays, forest->radiosity[leaf]);
-        if (!scene_is_sky(scene, root))
-            rgb_add(&sum, -1.0 / rays, scene_root_material(scene, root)->emission);
+        rgb_add(scene_is_sky(scene, root) ? lamps : &sum,
+                scene_is_sky(scene, root) ? 1.0 / rays : -1.0 / rays,
+                scene_root_material(scene, root)->emission);
         *error += meter->error ? (double)meter->error[leaf] / rays : 0.0;
     }
     return sum;
 }
 
-struct reading meter_read(const struct meter *meter, struct vec3 x, struct vec3 normal,
+struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 normal,
                           int rays, uint64_t seed)
 {
     const struct scene *scene = meter->forest->scene;
     int each = (rays + BATCHES - 1) / BATCHES;
-    struct reading reading = {.error = 0.0};
+    struct metered reading = {.error = 0.0};
     struct rgb square = {{0.0, 0.0, 0.0}};
     double all = 0.0, off = 0.0, variance = 0.0;
     x = vec3_add(x, vec3_scale(normal, meter->height));
@@ -165,7 +168,8 @@ struct reading meter_read(const struct meter *meter, struct vec3 x, struct vec3 
     }
     for (int batch = 0; batch < BATCHES && !stop_is_asked(); batch++) {
         uint64_t own = hash_mix(seed * BATCHES + (uint64_t)batch);
-        struct rgb light = read_rest(meter, x, normal, each, own, &off), lamps = {{0.0}};
+        struct rgb lamps = {{0.0, 0.0, 0.0}}, sky = lamps;
+        struct rgb light = read_rest(meter, x, normal, each, own, &sky, &off);
         for (int64_t k = 0; k < meter->lamp_count; k++) {
             struct rgb e = scene_root_material(scene, meter->lamps[k])->emission;
             double factor = meter->shares[k], part = factor * rgb_sum(e) / all;
@@ -176,6 +180,7 @@ struct reading meter_read(const struct meter *meter, struct vec3 x, struct vec3 
             rgb_add(&lamps, factor, e);
         }
         rgb_add(&light, 1.0, lamps);
+        rgb_add(&lamps, 1.0, sky);
         rgb_add(&reading.lamps, 1.0 / BATCHES, lamps);
         rgb_add(&reading.irradiance, 1.0 / BATCHES, light);
         for (int c = 0; c < BANDS; c++)

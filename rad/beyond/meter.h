@@ -18,9 +18,9 @@ struct meter {
     struct octree_counts *counts; /* of rays so far; owned */
 };
 
-struct reading {
+struct metered {
     struct rgb irradiance; /* W/m^2 */
-    struct rgb lamps;      /* the part straight from lamps, but for a sky, W/m^2 */
+    struct rgb lamps;      /* the part straight from lamps and a sky, W/m^2 */
     double error;          /* bound on the error of a band, for 95 % of points, W/m^2 */
 };
 
@@ -30,7 +30,7 @@ void meter_free(struct meter *meter);
 
 /* Returns the irradiance at x, scene units, by about this many rays, and as many segments
  * to lamps; 8 of each at least. `normal` has length 1. The same on every rank. */
-struct reading meter_read(const struct meter *meter, struct vec3 x, struct vec3 normal,
+struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 normal,
                           int rays, uint64_t seed);
 
 #endif
