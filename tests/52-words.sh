@@ -104,6 +104,11 @@ check "without predictions" idle 1 "--alpha" scenes/squares.obj --alpha 0.25
 check "with them" idle 1 "" scenes/squares.obj --alpha 0.25 --paper
 check "or where they are told" idle 1 "" scenes/squares.obj --alpha 0.25 \
     --stats "$work/idle.json"
+check "without false colours" idle 1 "--lines, --lux" $box --size 9x9 --lines 3 --lux \
+    -o "$work/idle.ppm"
+check "with some" idle 1 "" $box --size 9x9 --lines 3 --lux --show irradiance \
+    -o "$work/idle.ppm"
+check "or with a report" idle 1 "" $box --lux --report "$work/idle.csv"
 check "overruled by --paper" idle 1 "--solver: --paper follows" scenes/squares.obj \
     --solver cg --oracle error --paper --oracle error
 check "none, where all do something" idle 1 "" $box --size 9x9 --samples 2 --exposure 2 \

@@ -13,6 +13,8 @@ struct names {
 static const char *const PICTURE[] = {"--size", "--samples", "--show", NULL};
 static const char *const COLOUR[] = {"--exposure", NULL};
 static const char *const OUTPUT[] = {"--flat", NULL};
+static const char *const SCALE[] = {"--lines", NULL};
+static const char *const UNIT[] = {"--lux", NULL};
 static const char *const LIGHT[] = {
     "--min-area", "--oracle", "--linking", "--form-factor", "--solver", "--balance",
     "--paper", "--alpha", "--tolerance", "--max-iterations", "--ke", "--memory", NULL};
@@ -61,6 +63,12 @@ static bool add_idle(const struct options *options, struct names *names)
         add(names, COLOUR);
     if (!light)
         add(names, OUTPUT);
+    bool falsely = colours && (options->show == SHOW_RADIOSITY ||
+                               options->show == SHOW_IRRADIANCE);
+    if (!falsely)
+        add(names, SCALE);
+    if (!falsely && !options->at && !options->report)
+        add(names, UNIT);
     return options->pixels && !(pictures && shows_light(options));
 }
 

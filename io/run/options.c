@@ -294,7 +294,7 @@ static const struct option OPTIONS[] = {
     {"--epsilon", "E", "error of a link (1e-4)", REAL(criterion.epsilon, 0, 1e30)},
     {"--accuracy", "A", "refine to this error",
      set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
-    {"--max-level", "N", "of subdivision (10)",
+    {"--max-level", "N", "",
      WHOLE(criterion.max_level, 0, ID_MAX_LEVEL)},
     {"--min-area", "A", "", REAL(criterion.min_area, 0, 1)},
     {"--tolerance", "T", "", REAL(criterion.tolerance, 0, 1)},
@@ -322,7 +322,7 @@ static const struct option OPTIONS[] = {
     {"--resume", "F", "go on from there", TEXT(resume)},
     {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
     {"--stats", "FILE", "report as JSON", TEXT(stats)},
-    {"--verbose", "", "levels of refinement", FLAG(verbose)},
+    {"--verbose", "", "", FLAG(verbose)},
     {"--dump", "patches|links", "print these", CHOICE(dump, "nothing|patches|links")},
     {"--quiet", "", "print nothing", FLAG(quiet)},
     {"--help", "", "or --help=OPTION", FLAG(help)},
@@ -626,6 +626,12 @@ static const struct {
                "    fov 45               the angle from bottom to top, degrees (45)\n"
                "    size 512 512         width and height, pixels (512 512)\n"
                "  Only eye and at are needed. An example is scenes/cornell.view.\n"},
+    {"--max-level", "  of subdivision (10)\n"},
+    {"--verbose", "  the levels of refinement, and more\n"},
+    {"--show", "  P is a patch, as 5/023, or a pixel, as 99,42. False colours of\n"
+               "  radiosity or irradiance have a scale: see --lux, --lines, --exposure.\n"},
+    {"--at", "  A point is a line of six numbers: x y z and a normal, with blanks or\n"
+             "  commas between. Lines of CSV go to the standard output.\n"},
     {"--min-area", "  of a patch, relative to the scene (1e-10)\n"},
     {"--tolerance", "  of the solution (1e-5)\n"},
     {"--max-iterations", "  at most (1000)\n"},
