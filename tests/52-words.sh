@@ -184,6 +184,34 @@ done
 check "a mesh with its note is a stored solution" \
     ./phr "$work/one/n.ply" --quiet -o "$work/again.ply"
 
+# --- brightness ---
+
+# told ARGUMENTS...: the exposure of a picture, in summary, report and comment, which
+# makes the same picture when it is given.
+told() {
+    ./phr $box --size 32x24 "$@" -o "$work/told.png" -o "$work/told.ppm" \
+        --stats "$work/told.json" >"$work/told" 2>"$work/log" || return 1
+    short=$(sed -n 's/^exposure  *//p' "$work/told")
+    long=$(tr '\0' '\n' <"$work/told.png" | grep -a -m 1 '^--exposure ' | cut -d' ' -f2)
+    [ "$short" ] && [ "$(printf %.6g "$long")" = "$short" ] &&
+        grep -qF "\"exposures\": [$long]" "$work/told.json" || return 1
+    cp "$work/told.ppm" "$work/first.ppm"
+    ./phr $box --size 32x24 "$@" --exposure "$long" -o "$work/told.ppm" --quiet &&
+        cmp "$work/told.ppm" "$work/first.ppm"
+}
+check "the exposure is told, and makes the same picture" told
+check "also of false colours" told --show irradiance
+check "and in lux" told --show radiosity --lux
+{ echo "# Blender 3.4.1"; echo "# www.blender.org"; cat scenes/cornell.obj
+} >"$work/made.obj"
+cp scenes/cornell.mtl "$work"
+says_ke() {
+    ./phr "$work/made.obj" --max-level 0 --final-gather 0 "$@" 2>&1 >"$work/out" |
+        grep -c ': made by Blender, whose Ke is a radiance: --ke radiance gives'
+}
+check "a file of Blender is told of --ke" [ "$(says_ke)" -eq 1 ]
+check "unless that is given" [ "$(says_ke --ke radiosity)" -eq 0 ]
+
 # --- progress ---
 
 run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128"

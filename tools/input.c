@@ -3,6 +3,7 @@
 #include "tools/input.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
@@ -225,6 +226,18 @@ static void take_up(struct run *run, const char *exporter)
         scene->up = subject_guess_up(scene, exporter, &run->up_reason);
 }
 
+/* Says that Blender writes radiances, if that may matter. */
+static void say_ke(struct run *run, const char *exporter)
+{
+    static const char *const KE[] = {"--ke", NULL};
+    bool emits = false;
+    for (int32_t i = 0; i < run->scene->input_count && !emits; i++)
+        emits = material_emits(scene_root_material(run->scene, i));
+    if (emits && strstr(exporter, "Blender") && !*options_given(&run->options, KE))
+        run_say(run, "%s: made by Blender, whose Ke is a radiance: --ke radiance gives "
+                     "pi times the light, which is then right", run->options.scene);
+}
+
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
@@ -236,6 +249,7 @@ static bool read_scene(struct run *run)
         take_up(run, read.exporter);
     if (run->stored)
         return true;
+    say_ke(run, read.exporter);
     if (run->options.ke == KE_RADIANCE)
         scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;

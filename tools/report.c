@@ -110,6 +110,9 @@ static void print_stored(struct run *run)
                (long long)forest_count(forest).patches,
                (long long)forest_count(forest).leaves,
                (long long)run->scene->sky_first);
+    for (int i = 0; i < run_camera_count(run) && run->exposures && !run->options.quiet; i++)
+        if (run->exposures[i] > 0.0)
+            printf("exposure    %.6g\n", run->exposures[i]);
 }
 
 /* True if a run has no output but the summary. */
@@ -132,6 +135,8 @@ bool report_summary(struct run *run)
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         run->stats.scene = run_scene_name(run);
+        run->stats.exposures = run->exposures;
+        run->stats.views = run->exposures ? run_camera_count(run) : 0;
         run->stats.scene_checksum = scene_hash(run->scene);
         run->stats.options = options_light_settings(&run->options);
         if (run->stats.memory_limited)

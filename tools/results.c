@@ -21,8 +21,9 @@
 #include "tools/show.h"
 #include "tools/table.h"
 
-/* Turns a picture into false colours, and says with which scale. */
-static void colour_falsely(struct run *run, struct image *image)
+/* Turns a picture into false colours, and says with which scale. Returns the tone with
+ * the exposure that asks for this scale. */
+static struct tone colour_falsely(struct run *run, struct image *image)
 {
     const struct options *options = &run->options;
     struct scale scale =
@@ -31,6 +32,11 @@ static void colour_falsely(struct run *run, struct image *image)
             SHOW_IRRADIANCE ? "irradiance" : "radiosity", scale.top,
             options->lux ? "lux" : "W/m^2");
     scale_paint(&scale, image);
+    struct tone tone = tone_make(scale_value(&(struct rgb){{1.0, 1.0, 1.0}}, scale.lux) /
+                                 scale.top);
+    for (int64_t i = 0; i < BANDS * (int64_t)image->width * image->height; i++)
+        image->rgb[i] = (float)((double)image->rgb[i] / tone.exposure);
+    return tone;
 }
 
 /* Writes the pictures of a view: those of bytes last, as these may have false colours. On
@@ -52,10 +58,11 @@ static void write_pictures(struct run *run, int view, float *picture)
             format_has_tone(target->format) != has_tone)
             continue;
         if (falsely && has_tone) {
-            colour_falsely(run, &image);
-            tone = tone_make(1.0);
+            tone = colour_falsely(run, &image);
             falsely = false;
         }
+        if (has_tone)
+            run->exposures[view] = tone.exposure;
         image_write(&image, &tone, target, &error);
         run_lose(run, &error);
     }
@@ -136,6 +143,7 @@ static float *make_picture(struct run *run, const struct renderer *renderer,
 static bool show_views(struct run *run, const struct renderer *renderer)
 {
     double *seconds = run->solver->account.seconds;
+    run->exposures = alloc_array((size_t)run_camera_count(run), sizeof *run->exposures);
     for (int view = 0; view < run_camera_count(run); view++) {
         double start = comm_seconds();
         float *picture = make_picture(run, renderer, &run->cameras[view]);

@@ -97,6 +97,7 @@ void run_free(struct run *run)
         solution_mesh_free(run->stored);
     alloc_free(run->stored);
     alloc_free(run->cameras);
+    alloc_free(run->exposures);
     text_names_free(&run->materials);
     points_free(&run->points);
     if (run->block.data)

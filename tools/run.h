@@ -21,6 +21,8 @@ struct run {
                                       found, on rank 0; or "" */
     struct text_names materials;   /* names of the scene's, on rank 0; or fewer */
     struct points points;          /* of --at, on rank 0 */
+    double *exposures;             /* [run_camera_count()] of pictures of bytes, 0: of
+                                      none; on rank 0; or NULL */
     struct octree *octree;
     struct solution_mesh *stored;  /* the scene's file is a stored solution; else NULL */
     struct node_block block;       /* memory of scene and octree */

@@ -176,8 +176,16 @@ static void compress_row(struct png *png, const float *row, int width,
     png->sum_of_sums %= ADLER;
 }
 
-static void write_head(struct png *png, const struct image *image)
+static void append_text(struct png *png, const char *text)
 {
+    for (; *text && png->count < NOTE_MOST; text++)
+        append(png, *text);
+}
+
+static void write_head(struct png *png, const struct image *image,
+                       const struct tone *tone)
+{
+    char exposure[64];
     fwrite("\x89PNG\r\n\x1A\n", 1, 8, png->output.file);
     append_uint32(png, (uint32_t)image->width);
     append_uint32(png, (uint32_t)image->height);
@@ -189,11 +197,11 @@ static void write_head(struct png *png, const struct image *image)
     write_chunk(png, "IHDR");
     append(png, 0); /* for looking at */
     write_chunk(png, "sRGB");
-    for (const char *c = "Comment"; *c; c++)
-        append(png, *c);
+    snprintf(exposure, sizeof exposure, "--exposure %.17g\n", tone->exposure);
+    append_text(png, "Comment");
     append(png, 0);
-    for (const char *c = output_note(); *c && png->count < NOTE_MOST; c++)
-        append(png, *c);
+    append_text(png, output_note());
+    append_text(png, exposure);
     if (*output_note())
         write_chunk(png, "tEXt");
     png->count = 0;
@@ -209,7 +217,7 @@ bool png_write(const struct image *image, const struct tone *tone, const char *p
     png.bytes = alloc_array(2 * samples + ROOM, 1);
     fill_crc_table(&png);
     fill_codes(&png);
-    write_head(&png, image);
+    write_head(&png, image, tone);
     begin_stream(&png);
     for (int y = 0; y < image->height && stop_check(error); y++) {
         compress_row(&png, image->rgb + (size_t)y * samples, image->width, tone);

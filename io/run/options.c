@@ -312,7 +312,7 @@ static const struct option OPTIONS[] = {
     {"--alpha", "A", "", REAL(criterion.alpha, 0, 1)},
     {"--two-sided", "", "backs reflect", FLAG(two_sided)},
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
-    {"--ke", "radiosity|radiance", "of lamps", CHOICE(ke, "radiosity|radiance")},
+    {"--ke", "radiosity|radiance", "Blender: last", CHOICE(ke, "radiosity|radiance")},
     {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
     {"--sky", "B|R,G,B", "around the scene", set_colour, FIELD(sky), 0, 1e30, NULL},
     {"--save-links", "F", "", TEXT(save_links)},
@@ -632,6 +632,8 @@ static const struct {
                "  radiosity or irradiance have a scale: see --lux, --lines, --exposure.\n"},
     {"--at", "  A point is a line of six numbers: x y z and a normal, with blanks or\n"
              "  commas between. Lines of CSV go to the standard output.\n"},
+    {"--ke", "  The unit of Ke, and of emissions in PLY files: W/m^2 (radiosity), or\n"
+             "  W/m^2/sr (radiance), which is what Blender writes to its files.\n"},
     {"--min-area", "  of a patch, relative to the scene (1e-10)\n"},
     {"--tolerance", "  of the solution (1e-5)\n"},
     {"--max-iterations", "  at most (1000)\n"},

@@ -57,6 +57,9 @@ void stats_print(const struct stats *stats, FILE *file)
                 "            %.2g %% of their own light in the median, a tenth exceeds "
                 "%.3g %%\n",
                 100.0 * stats->gathered.median, 100.0 * stats->gathered.worst_tenth);
+    for (int64_t i = 0; i < stats->views; i++)
+        if (stats->exposures[i] > 0.0)
+            fprintf(file, "exposure    %.6g\n", stats->exposures[i]);
     fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
 }
 
@@ -82,6 +85,9 @@ static void write_origin(FILE *file, const struct stats *stats)
     for (const char *line = stats->options; *line; line = strchr(line, '\n') + 1)
         fprintf(file, "%s\"%.*s\"", line == stats->options ? "" : ", ",
                 (int)strcspn(line, "\n"), line);
+    fprintf(file, "],\n  \"exposures\": [");
+    for (int64_t i = 0; i < stats->views; i++)
+        fprintf(file, "%s%.17g", i ? ", " : "", stats->exposures[i]);
     fprintf(file, "],\n");
 }
 
