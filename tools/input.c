@@ -20,7 +20,7 @@
 /* Warns of `count` cases, if there are any; `text` may have a place for `detail`. */
 static void warn(struct run *run, int64_t count, const char *text, const char *detail)
 {
-    char line[400];
+    char line[600];
     snprintf(line, sizeof line, text, detail);
     if (count > 0)
         run_say(run, "%s: warning: %lld %s", run->options.scene, (long long)count, line);
@@ -29,7 +29,7 @@ static void warn(struct run *run, int64_t count, const char *text, const char *d
 static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
-    char number[64] = "", lost[250] = "", materials[300];
+    char number[64] = "", lost[400] = "", materials[300];
     snprintf(materials, sizeof materials, "%s%s%s%s", read->materials.first,
              *read->meant ? "; did you mean " : "", read->meant,
              *read->meant ? "?" : "");
@@ -50,10 +50,11 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
     if (read->textures.count > 0)
         snprintf(lost, sizeof lost,
                  "; where that cannot be read (%lld, first: %s), Kd alone, or .5 if it "
-                 "is 1",
+                 "is 1; PNG and PPM are read: `magick a.jpg a.png` makes one",
                  (long long)read->textures.count, read->textures.first);
     warn(run, read->textured,
-         "material(s) with a texture: Kd, or Ke, times its mean counts%s", lost);
+         "material(s) with a texture: Kd, or Ke, times the mean over its faces counts%s",
+         lost);
     warn(run, read->passed_count, "keyword(s) of materials passed over: %s",
          read->passed);
     warn(run, read->unread,

@@ -110,7 +110,8 @@ static void print_stored(struct run *run)
                (long long)forest_count(forest).patches,
                (long long)forest_count(forest).leaves,
                (long long)run->scene->sky_first);
-    for (int i = 0; i < run_camera_count(run) && run->exposures && !run->options.quiet; i++)
+    bool told = run->exposures && !run->options.quiet;
+    for (int i = 0; told && i < run_camera_count(run); i++)
         if (run->exposures[i] > 0.0)
             printf("exposure    %.6g\n", run->exposures[i]);
 }

@@ -1,7 +1,7 @@
 /* False colours.
  *
- * Colours are those of viridis (van der Walt and Smith, 2015), by a polynomial of degree 6
- * in each band (within .02 of the table): they rise evenly in lightness, also for the
+ * Colours are those of viridis (van der Walt and Smith, 2015), by a polynomial of degree
+ * 6 in each band (within .02 of the table): they rise evenly in lightness, also for the
  * colour-blind and on paper. Numbers are drawn with a font of 5 x 7 dots, as large as the
  * picture lets them be. */
 #include "io/picture/scale.h"

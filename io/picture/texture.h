@@ -1,15 +1,13 @@
-/* Pictures on surfaces, of which one colour is taken. */
+/* Pictures on surfaces, of which mean colours are taken. */
 #ifndef IO_PICTURE_TEXTURE_H
 #define IO_PICTURE_TEXTURE_H
 
-#include <stdbool.h>
+#include "io/scene/maps.h"
 
-#include "geom/error.h"
-#include "geom/vec.h"
-
-/* Finds the mean of the linear light of a PNG or PPM, 1 for white, whose codes are those
- * of a screen (sRGB). The file has to be a regular one.
+/* Finds the means of the linear light of a PNG or PPM over parts, and over the whole: see
+ * map_mean. Its codes are those of a screen (sRGB). The file has to be a regular one.
  * Errors: those of image_read(). */
-bool texture_mean(const char *path, struct rgb *mean, struct error *error);
+bool texture_mean(const char *path, const struct map_part *parts, int64_t count,
+                  struct rgb *means, struct error *error);
 
 #endif

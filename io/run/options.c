@@ -629,7 +629,7 @@ static const struct {
     {"--max-level", "  of subdivision (10)\n"},
     {"--verbose", "  the levels of refinement, and more\n"},
     {"--show", "  P is a patch, as 5/023, or a pixel, as 99,42. False colours of\n"
-               "  radiosity or irradiance have a scale: see --lux, --lines, --exposure.\n"},
+               "  radiosity or irradiance: see --lux, --lines, --exposure, too.\n"},
     {"--at", "  A point is a line of six numbers: x y z and a normal, with blanks or\n"
              "  commas between. Lines of CSV go to the standard output.\n"},
     {"--ke", "  The unit of Ke, and of emissions in PLY files: W/m^2 (radiosity), or\n"

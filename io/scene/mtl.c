@@ -217,50 +217,6 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct err
     return good;
 }
 
-struct map_mean {
-    enum { NOT_TRIED, FOUND, LOST } state;
-    struct rgb mean;
-};
-
-/* Takes the map of Kd (`k` is 0) or Ke (1) of a material. */
-static void take_map(struct mtl_entry *entry, int k, const struct map_mean *map)
-{
-    struct rgb *colour =
-        k == 0 ? &entry->material.reflectance : &entry->material.emission;
-    bool given = k == 0 ? entry->has_kd || entry->unread : entry->has_ke;
-    bool found = map->state == FOUND, white = true;
-    for (int c = 0; c < BANDS; c++) {
-        colour->band[c] = given || (k == 1 && !found) ? colour->band[c] : 1.0;
-        white = white && colour->band[c] >= 1.0;
-        colour->band[c] *= found ? map->mean.band[c] : 1.0;
-    }
-    if (k == 0 && white && !found)
-        *colour = NEUTRAL.reflectance;
-}
-
-void mtl_take_maps(struct mtl_table *table, mtl_mean *mean_of, struct text_missing *lost,
-                   struct text_names *files)
-{
-    struct map_mean *maps = alloc_array((size_t)table->maps.count, sizeof *maps);
-    for (int32_t i = 0; i < table->names.count; i++)
-        for (int k = 0; k < 2; k++) {
-            int32_t number = table->entries[i].maps[k] - 1;
-            if (number < 0 || !table->entries[i].used)
-                continue;
-            const char *path = table->maps.name[number];
-            struct error error = {EXIT_DONE, ""};
-            struct map_mean *map = &maps[number];
-            if (map->state == NOT_TRIED)
-                map->state = mean_of && mean_of(path, &map->mean, &error) ? FOUND : LOST;
-            if (map->state == LOST)
-                text_missing_add(lost, path);
-            if (files)
-                text_names_add(files, path);
-            take_map(&table->entries[i], k, map);
-        }
-    alloc_free(maps);
-}
-
 void mtl_free(struct mtl_table *table)
 {
     text_names_free(&table->maps);

@@ -2,7 +2,7 @@
  *
  * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E,
  * W/m^2), each as three numbers or one for grey, in capitals or not; map_Kd and map_Ke,
- * pictures of which the mean counts. d, Tr, and Kd and Ke in the forms `spectral` and
+ * pictures (io/scene/maps.h). d, Tr, and Kd and Ke in the forms `spectral` and
  * `xyz` only set flags for a warning: every material is opaque. All other statements are
  * skipped, and named unless nothing is lost without them. */
 #ifndef IO_SCENE_MTL_H
@@ -36,10 +36,6 @@ struct mtl_table {
     struct text_names passed;  /* keywords of statements passed over */
 };
 
-/* The mean colour of a picture in a file, 1 for white. False with an error if there is
- * none. */
-typedef bool mtl_mean(const char *path, struct rgb *mean, struct error *error);
-
 /* Returns the number of the material `name`. A new name is added, not yet defined. */
 int32_t mtl_find(struct mtl_table *table, const char *name);
 
@@ -53,13 +49,6 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found,
 
 /* Does the same with a text in memory. The text stays the caller's, its lines used up. */
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
-
-/* Multiplies Kd and Ke of the materials in use, 1 where not given, by the means of their
- * pictures. Without a mean, Kd stays, or is halved if white, and Ke stays. `mean_of` may
- * be NULL: there is no mean. Adds the pictures without a mean to `lost`, and the paths of
- * all to `files` unless NULL. */
-void mtl_take_maps(struct mtl_table *table, mtl_mean *mean_of, struct text_missing *lost,
-                   struct text_names *files);
 
 void mtl_free(struct mtl_table *table);
 

@@ -33,6 +33,7 @@ enum {
 struct obj_corner {
     int32_t vertex;
     int32_t normal; /* negative: none */
+    int32_t place;  /* texture coordinates; negative: none */
 };
 
 struct obj_triangle {
@@ -64,6 +65,7 @@ struct obj_reader {
     struct obj_vectors vertices;
     struct obj_colours colours;
     struct obj_vectors normals;    /* of length 1, or 0 where the line has no direction */
+    struct obj_vectors places;     /* texture coordinates of all vt lines */
     bool has_normals;              /* a face has a normal with a direction */
     struct obj_triangles triangles;
     struct obj_corner *corners;    /* of the current face */
@@ -163,17 +165,30 @@ static bool read_normal(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* Reads a corner: V, V/VT, V//VN or V/VT/VN. VT only has to be an integer. */
-static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal,
-                         bool *has_normal)
+/* Reads the numbers of texture coordinates; 0 without. */
+static bool read_place(struct obj_reader *reader, char *rest)
 {
-    int64_t unused;
+    double value[2] = {0.0, 0.0};
+    for (int i = 0; i < 2; i++) {
+        const char *word = text_word(&rest);
+        if (!word || !text_is_number(word, &value[i]) || fabs(value[i]) > TEXT_NUMBER_MAX)
+            value[i] = 0.0;
+    }
+    if (reader->places.count < COUNT_MAX)
+        vectors_add(&reader->places, (struct vec3){value[0], value[1], 0.0});
+    return true;
+}
+
+/* Reads a corner: V, V/VT, V//VN or V/VT/VN. VT that is not there is 0. */
+static bool parse_corner(const char *word, int64_t *vertex, int64_t *place,
+                         int64_t *normal, bool *has_normal)
+{
     *has_normal = false;
     if (!text_integer(&word, vertex))
         return false;
     if (*word == '/') {
         word++;
-        text_integer(&word, &unused);
+        text_integer(&word, place);
     }
     if (*word == '/') {
         word++;
@@ -205,9 +220,9 @@ static int32_t find_normal(struct obj_reader *reader, int64_t index)
 static bool read_corner(struct obj_reader *reader, const char *word,
                         struct obj_corner *corner)
 {
-    int64_t vertex, normal = 0;
+    int64_t vertex, place = 0, normal = 0;
     bool has_normal;
-    if (!parse_corner(word, &vertex, &normal, &has_normal))
+    if (!parse_corner(word, &vertex, &place, &normal, &has_normal))
         return error_set(reader->error, EXIT_USAGE,
                          "%s:%ld: bad corner '%.40s' of a face", reader->text.path,
                          reader->text.line, word);
@@ -220,6 +235,7 @@ static bool read_corner(struct obj_reader *reader, const char *word,
                          digits < 40 ? (int)digits : 40, word, reader->vertices.count);
     }
     corner->normal = has_normal ? find_normal(reader, normal) : -1;
+    corner->place = place != 0 ? find_place(place, reader->places.count) : -1;
     return true;
 }
 
@@ -314,7 +330,7 @@ static bool read_group(struct obj_reader *reader, char *rest)
  * without normals: then faces look flat. */
 static bool is_harmless(const struct obj_reader *reader, const char *keyword, char *rest)
 {
-    static const char *const words[] = {"vt", "l", "p", "vp", "vw", "mg", "lod"};
+    static const char *const words[] = {"l", "p", "vp", "vw", "mg", "lod"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (strcmp(keyword, words[i]) == 0)
             return true;
@@ -332,6 +348,8 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_vertex(reader, line);
     if (strcmp(keyword, "vn") == 0)
         return read_normal(reader, line);
+    if (strcmp(keyword, "vt") == 0)
+        return read_place(reader, line);
     if (strcmp(keyword, "f") == 0)
         return read_face(reader, line);
     if (strcmp(keyword, "mtllib") == 0)
@@ -491,6 +509,41 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
+/* Takes the pictures of materials, if there are any: a face that differs from others has
+ * the colour of its own part. */
+static void take_maps(struct obj_reader *reader)
+{
+    struct obj_triangles *triangles = &reader->triangles;
+    if (reader->materials.maps.count == 0)
+        return;
+    struct map_face *faces = alloc_array((size_t)triangles->count, sizeof *faces);
+    struct rgb *colours = alloc_array((size_t)triangles->count, sizeof *colours);
+    for (int64_t i = 0; i < triangles->count; i++) {
+        const struct obj_triangle *triangle = &triangles->at[i];
+        struct triangle t;
+        faces[i] = (struct map_face){.material = triangle->material, .has_part = true};
+        for (int k = 0; k < 3; k++) {
+            const struct obj_corner *corner = &triangle->corner[k];
+            t.corner[k] = reader->vertices.at[corner->vertex];
+            faces[i].has_part = faces[i].has_part && corner->place >= 0;
+            if (corner->place < 0)
+                continue;
+            faces[i].part.at[k][0] = reader->places.at[corner->place].x;
+            faces[i].part.at[k][1] = reader->places.at[corner->place].y;
+        }
+        faces[i].area = triangle_area(&t);
+    }
+    maps_take(&reader->materials, faces, triangles->count, reader->repairs->mean_of,
+              &reader->repairs->textures, reader->repairs->files, colours);
+    for (int64_t i = 0; i < triangles->count; i++) {
+        const struct material own = {colours[i], {{0.0, 0.0, 0.0}}};
+        if (triangles->at[i].colour < 0 && colours[i].band[0] >= 0.0)
+            triangles->at[i].colour = palette_add(&reader->colours.faces, &own);
+    }
+    alloc_free(colours);
+    alloc_free(faces);
+}
+
 /* Returns the format of meshes that the file seems to have, or NULL. */
 static const char *format_of(const struct source *source)
 {
@@ -524,13 +577,13 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                   source->path, format_of(source));
     }
     if (good)
-        mtl_take_maps(&reader.materials, repairs->mean_of, &repairs->textures,
-                      repairs->files);
+        take_maps(&reader);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
     alloc_free(reader.colours.vertices.at);
     palette_free(&reader.colours.faces);
     alloc_free(reader.normals.at);
+    alloc_free(reader.places.at);
     alloc_free(reader.triangles.at);
     alloc_free(reader.corners);
     mtl_free(&reader.materials);

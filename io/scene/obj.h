@@ -6,8 +6,9 @@
  * such line into the group named by the rest of the line; faces before any such line, or
  * behind one without a name, are in the group "default". Groups are numbered by their
  * first faces. A face whose corners all have colours has their mean in place of Kd, as a
- * linear reflectance (io/scene/ply.h). Points, lines, texture coordinates and settings of
- * programs are skipped. Other keywords, such as those of free-form surfaces, are skipped
+ * linear reflectance (io/scene/ply.h). Texture coordinates (vt)
+ * say which part of a picture counts. Points, lines and settings of programs are
+ * skipped. Other keywords, such as those of free-form surfaces, are skipped
  * and counted. Lines may end in LF or CRLF and go on after a backslash. */
 #ifndef IO_SCENE_OBJ_H
 #define IO_SCENE_OBJ_H
@@ -16,7 +17,7 @@
 
 #include "geom/error.h"
 #include "geom/scene.h"
-#include "io/scene/mtl.h"
+#include "io/scene/maps.h"
 #include "io/scene/text.h"
 
 /* Counts of repairs, for one warning per kind. Starts as {0}, or with the first three. */
@@ -24,7 +25,7 @@ struct obj_repairs {
     struct text_names *files;      /* where paths of libraries and pictures go, or NULL */
     struct text_names *names;      /* where names of the scene's materials go, in order,
                                       while these have one; or NULL */
-    mtl_mean *mean_of;             /* finds the colour of a picture; NULL: of none */
+    map_mean *mean_of;             /* finds the colours of a picture; NULL: of none */
     char exporter[80];             /* the first line, if it is a comment; or "" */
     struct text_missing materials; /* names without a definition: neutral grey instead */
     char meant[128];               /* a defined name like the first of these, or "" */

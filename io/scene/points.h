@@ -22,7 +22,8 @@ struct points {
 /* Reads lines of six numbers x y z nx ny nz, with blanks, commas or semicolons between; #
  * begins a comment, and a first line of words is a heading. To be freed with
  * points_free(), also after an error.
- * Errors: "FILE:LINE: REASON", EXIT_USAGE: other lines, a normal of length 0, no point. */
+ * Errors: "FILE:LINE: REASON", EXIT_USAGE: other lines, a normal of length 0; no
+ * point. */
 bool points_read(struct points *points, const char *path, struct error *error);
 bool points_of_text(struct points *points, struct text *text, struct error *error);
 void points_free(struct points *points);

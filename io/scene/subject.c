@@ -134,7 +134,8 @@ static double lamps_at(const struct sums *sums, const struct extent *box, int32_
 int32_t subject_guess_up(const struct scene *scene, const char *words,
                          const char **reason)
 {
-    static const char *const Z_UP[] = {"FreeCAD", "OpenSCAD", "Rhino", "Revit", "CityGML"};
+    static const char *const Z_UP[] = {"FreeCAD", "OpenSCAD", "Rhino", "Revit",
+                                       "CityGML"};
     enum { Y = 2, Z = 3 };
     struct extent box = box_of(scene, REST, NULL, 0);
     box = box.is_empty ? box_of(scene, LAMPS, NULL, 0) : box;

@@ -312,9 +312,12 @@ static void test_notes(void)
 }
 
 /* Finds the mean of pictures called found.png beside the library. */
-static bool mean_of(const char *path, struct rgb *mean, struct error *reason)
+static bool mean_of(const char *path, const struct map_part *parts, int64_t count,
+                    struct rgb *means, struct error *reason)
 {
-    *mean = (struct rgb){{0.5, 0.25, 0}};
+    means[count] = (struct rgb){{0.5, 0.25, 0}};
+    for (int64_t i = 0; i < count; i++) /* any numbers: the first coordinate */
+        means[i] = (struct rgb){{parts[i].at[0][0], parts[i].at[0][0], 0}};
     return strcmp(path, "build/found.png") == 0 || strcmp(path, "build/a/b c.png") == 0 ||
            error_set(reason, EXIT_USAGE, "%s: no picture", path);
 }
@@ -353,6 +356,22 @@ static void test_textures(void)
     tap_ok(files.count == 5 && strcmp(files.name[1], "build/found.png") == 0,
            "the paths of all are told");
     text_names_free(&files);
+    repairs.files = NULL;
+    scene = read_scene("mtllib obj_test.mtl\n" CORNERS "vt .5\nvt .5625\nvt .1\nvt .7\n"
+                       "v 0 0 9\nv 1 0 9\nv 1 1 9\nusemtl a\nf 1/1 2/1 3/1\n"
+                       "f -3/2 -2/2 -1/2\nusemtl b\nf 1/1 2/1 3/1\nf -3/3 -2/3 -1/3\n"
+                       "f 1 2 3\nusemtl d\nf 1/1 2/1 3/1\nf 1/4 2/4 3/4\n");
+    const double mean = 0.265625; /* half of the mean of .5 and .5625 */
+    tap_ok(scene && colour_is(material_at(scene, 0)->reflectance, mean, mean, 0) &&
+               colour_is(material_at(scene, 1)->reflectance, mean, mean, 0),
+           "faces that are nearly alike have their mean by area");
+    tap_ok(scene && colour_is(material_at(scene, 2)->reflectance, 0.5, 0.5, 0) &&
+               colour_is(material_at(scene, 3)->reflectance, 0.1, 0.1, 0) &&
+               colour_is(material_at(scene, 4)->reflectance, 0.5, 0.25, 0),
+           "others their own, those without coordinates the whole picture's");
+    tap_ok(scene && colour_is(material_at(scene, 5)->emission, 0.6, 0.6, 0) &&
+               colour_is(material_at(scene, 6)->emission, 0.6, 0.6, 0),
+           "lamps have one light");
     repairs = (struct obj_repairs){0};
 }
 

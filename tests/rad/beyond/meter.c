@@ -1,9 +1,9 @@
 /* The light meter against the path tracer, at points of a scene: scenes/cornell.obj, or
  * the one named.
  *
- * A claim is a bound for 95 % of points; of POINTS more than OUTSIDE are outside in one of
- * 400 tests, and none may be off by three times its claim. Three deviations of the path
- * tracer are added to the claims. */
+ * A claim is a bound for 95 % of points; of POINTS more than OUTSIDE are outside in one
+ * of 60 scenes, and none may be off by three times its claim. Three deviations of the
+ * path tracer are added to the claims. */
 #include "rad/beyond/meter.h"
 
 #include "geom/hash.h"
