@@ -106,7 +106,8 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall \
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
         patch_exchange link patch_link method cluster node oracle error_oracle pushpull \
-        final_gather lamps checksum paths meter plan balance assign gather_mesh spotcheck \
+        final_gather lamps checksum paths meter plan balance assign gather_mesh \
+        spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint shading mesh render options progress screened stop norms \
         cie whole stability gaps openings leaks sky converge linking exchange conjugate \

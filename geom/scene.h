@@ -81,8 +81,7 @@ struct scene {
     int32_t sky_first;          /* input triangles from this one on are a sky, which is no
                                  * part of the file; input_count: there is none */
     int32_t material_count;
-    int32_t up;                 /* the axis that is up: 1, 2, 3 for x, y, z; less than 0:
-                                 * where it points down; 0: not known */
+    int32_t up;                 /* upward axis: 1, 2, 3 for x, y, z, or -; 0: unknown */
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
     bool two_sided_lamps;       /* if two_sided: lamps have twins, too */
     struct scene_place place;

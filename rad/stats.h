@@ -116,8 +116,7 @@ struct stats {
     uint64_t scene_checksum; /* scene_hash() */
     const char *options;     /* lines "--option value", not the defaults; borrowed */
     const double *exposures; /* [views] of pictures of bytes, 0: of none; borrowed */
-    int64_t views;
-    int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
+    int64_t views, ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
     int64_t counted_bytes; /* of links, patches and clusters, as counted by --memory */

@@ -56,8 +56,8 @@ for ranks in 1 3; do
         says $ranks "the fronts of the lamps look away from all else" away.obj $inside
     check "a lamp in another room" \
         says $ranks "lit are faces within x 9 to 13" other.obj $inside
-    check "a camera behind a wall" says $ranks "the backs of faces.* lies within $within" \
-        room.obj --view "$work/behind.view"
+    check "a camera behind a wall" says $ranks \
+        "the backs of faces.* lies within $within" room.obj --view "$work/behind.view"
     check "a camera that looks past" says $ranks \
         "looks past the scene, which lies within $within" room.obj \
         --view "$work/past.view"

@@ -69,7 +69,7 @@ check "no patch and no pixel" refused links:5 'neither a patch, .*, nor a pixel'
 check "no such pixel" refused links:64,0 'there is no such pixel in 64x64'
 check "no patch named" refused links 'of which patch'
 check "no error without a final gather" refused error 'no error without' --final-gather 0
-check "no such picture" refused leaves 'is not one of light|mesh'
+check "no such picture" refused leaves 'is not one of light|radiosity'
 show 2 links:12/33333
 check "a patch that is not divided so often is known to be missing later" \
     grep -q 'there is no such patch' "$work/err"

@@ -26,7 +26,7 @@
  * power above which a run has failed. */
 static const double OFF = 0.01, OFF_BALANCE = 0.01, ABSURD = 1.5;
 
-/* Least part of a loss that is its reason, and of the light on backs on a group that is
+/* Least part of a loss to be its reason, and of the light on backs for a group to be
  * named. */
 static const double REASON = 0.5, LEAST = 0.05;
 
@@ -37,7 +37,7 @@ enum {
     LAMP_RAYS = 1000,  /* onto all lamps */
     LAMP_POINTS = 64,  /* of each lamp */
     RAYS = 100000,     /* from all lit fronts, or by their light */
-    INSIDE_RAYS = 16,  /* from a point that may be inside of a thing */
+    INSIDE_RAYS = 16,  /* from a point, perhaps inside of a thing */
     NAMED = 3,         /* groups in a warning, at most */
     CRACKS = 1,        /* of these, so many may leave a closed scene */
     NOTHING = -2       /* for root_met() */
@@ -196,7 +196,7 @@ static bool is_closed(const struct run *run)
     return lost <= CRACKS;
 }
 
-/* Light that ends on black backs, in parts of the emitted. */
+/* Light ending on black backs, in parts of the emitted. */
 struct loss {
     double *of;    /* [loss_places()] on backs of the faces of each group; of a scene of
                       one group, of each input triangle */

@@ -1,7 +1,7 @@
 /* Why a picture is dark.
  *
  * A grid of pixels is looked through again: a ray through the middle of each pixel meets
- * nothing, a sky, a back, a surface that reflects nothing, or one that no light comes to.
+ * nothing, a sky, a back, a surface reflecting nothing, or one without light.
  * The most frequent of these is the reason; but nothing and sky, which are around any
  * thing, only where there is hardly a surface. Of surfaces without light the reason is in
  * the lamps: there are none but a sky, which does not get in, or their fronts look away,
@@ -45,7 +45,7 @@ static enum sight look(const struct run *run, const struct camera *camera, int x
     return material_is_dark(scene_root_material(scene, root)) ? SIGHT_BLACK : SIGHT_UNLIT;
 }
 
-/* Writes the box of the roots that are not of a sky, or of those with light. */
+/* Writes the box of the roots but for a sky, or of those with light. */
 static void put_box(const struct run *run, bool lit, char *text, size_t size)
 {
     const struct scene *scene = run->scene;

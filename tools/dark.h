@@ -5,7 +5,7 @@
 #include "tools/run.h"
 
 /* On rank 0. Warns once if nine tenths of the picture of a view, or more, are black or
- * sky, and names the reason: the camera, a sky that does not get in, lamps that look
+ * sky, and names the reason: the camera, a sky not getting in, lamps looking
  * away, a missing library. `picture`: RGB floats, the camera's size. */
 void dark_warn(struct run *run, int view, const float *picture);
 

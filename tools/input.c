@@ -31,8 +31,8 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
 {
     char number[64] = "", lost[400] = "", materials[300];
     snprintf(materials, sizeof materials, "%s%s%s%s", read->materials.first,
-             *read->meant ? "; did you mean " : "", read->meant,
-             *read->meant ? "?" : "");
+             *read->materials.like ? "; did you mean " : "", read->materials.like,
+             *read->materials.like ? "?" : "");
     if (read->libraries.count > 0)
         snprintf(run->missing, sizeof run->missing, "the file %.128s, which is missing",
                  read->libraries.first);
@@ -207,8 +207,8 @@ static void add_sky(struct run *run)
     }
 }
 
-/* Takes the axis that is up: as given, or as a view has it, or as the scene seems to
- * have. Views that do not say get the axis that is given. */
+/* Takes the upward axis: as given, or as a view has it, or as the scene seems to have.
+ * Views without an `up` line get the one given. */
 static void take_up(struct run *run, const char *exporter)
 {
     static const int32_t AXES[] = {[UP_GUESSED] = 0, [UP_Y] = 2, [UP_Z] = 3,
@@ -227,7 +227,7 @@ static void take_up(struct run *run, const char *exporter)
         scene->up = subject_guess_up(scene, exporter, &run->up_reason);
 }
 
-/* Says that Blender writes radiances, if that may matter. */
+/* Says of files of Blender, with lamps, whose unit of Ke they have. */
 static void say_ke(struct run *run, const char *exporter)
 {
     static const char *const KE[] = {"--ke", NULL};

@@ -21,8 +21,8 @@
 #include "tools/show.h"
 #include "tools/table.h"
 
-/* Turns a picture into false colours, and says with which scale. Returns the tone with
- * the exposure that asks for this scale. */
+/* Turns a picture into false colours, and says with which scale. Returns the tone whose
+ * exposure asks for this scale. */
 static struct tone colour_falsely(struct run *run, struct image *image)
 {
     const struct options *options = &run->options;

@@ -66,7 +66,7 @@ bool table_print_points(struct run *run)
 /* --- by object --- */
 
 /* Sums over the leaves of an object or a material. */
-struct sums {
+struct totals {
     double area;                        /* square input units */
     double emitted, absorbed, reflected; /* W */
     double radiosity, irradiance;       /* W/m^2 or lux, times area */
@@ -74,7 +74,7 @@ struct sums {
     double error;                       /* of a leaf's irradiance, times area */
 };
 
-static void add_leaf(struct sums *sums, const struct run *run,
+static void add_leaf(struct totals *totals, const struct run *run,
                      const struct irradiance *found, int32_t leaf)
 {
     const struct forest *forest = run->solver->model.forest;
@@ -82,18 +82,18 @@ static void add_leaf(struct sums *sums, const struct run *run,
     const struct rgb *h = &found->forest.radiosity[leaf];
     double area = forest_area(forest, leaf) * scene_area_unit(forest->scene);
     double value = scale_value(h, run->options.lux);
-    sums->least = sums->area > 0.0 ? fmin(sums->least, value) : value;
-    sums->most = fmax(sums->most, value);
-    sums->area += area;
-    sums->radiosity += area * scale_value(&forest->radiosity[leaf], run->options.lux);
-    sums->irradiance += area * value;
+    totals->least = totals->area > 0.0 ? fmin(totals->least, value) : value;
+    totals->most = fmax(totals->most, value);
+    totals->area += area;
+    totals->radiosity += area * scale_value(&forest->radiosity[leaf], run->options.lux);
+    totals->irradiance += area * value;
     if (found->error)
-        sums->error += area * value_error((double)found->error[leaf], run->options.lux);
+        totals->error += area * value_error((double)found->error[leaf], run->options.lux);
     for (int c = 0; c < BANDS; c++) {
         double rho = m->reflectance.band[c];
-        sums->emitted += area * m->emission.band[c];
-        sums->absorbed += area * (1.0 - rho) * h->band[c];
-        sums->reflected += area * rho * h->band[c];
+        totals->emitted += area * m->emission.band[c];
+        totals->absorbed += area * (1.0 - rho) * h->band[c];
+        totals->reflected += area * rho * h->band[c];
     }
 }
 
@@ -106,17 +106,17 @@ static void write_name(FILE *file, const char *name)
     putc('"', file);
 }
 
-static void write_sums(FILE *file, const char *kind, const char *name,
-                       const struct sums *sums)
+static void write_totals(FILE *file, const char *kind, const char *name,
+                       const struct totals *totals)
 {
-    if (!(sums->area > 0.0))
+    if (!(totals->area > 0.0))
         return;
     fprintf(file, "%s,", kind);
     write_name(file, name);
-    fprintf(file, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.3g\n", sums->area,
-            sums->emitted, sums->absorbed, sums->reflected, sums->radiosity / sums->area,
-            sums->irradiance / sums->area, sums->least, sums->most,
-            sums->error / sums->area);
+    fprintf(file, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.3g\n", totals->area,
+            totals->emitted, totals->absorbed, totals->reflected,
+            totals->radiosity / totals->area, totals->irradiance / totals->area,
+            totals->least, totals->most, totals->error / totals->area);
 }
 
 /* Writes the lines of all objects and materials, on rank 0. */
@@ -124,8 +124,8 @@ static void write_all(const struct run *run, const struct irradiance *found, FIL
 {
     const struct forest *forest = run->solver->model.forest;
     const struct scene *scene = forest->scene;
-    struct sums *objects = alloc_array((size_t)scene->groups.count, sizeof *objects);
-    struct sums *materials = alloc_array((size_t)scene->material_count,
+    struct totals *objects = alloc_array((size_t)scene->groups.count, sizeof *objects);
+    struct totals *materials = alloc_array((size_t)scene->material_count,
                                          sizeof *materials);
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
@@ -140,11 +140,11 @@ static void write_all(const struct run *run, const struct irradiance *found, FIL
                   "irradiance_least,irradiance_most,irradiance_error\n");
     const char *name = scene->groups.names;
     for (int32_t i = 0; i < scene->groups.count; i++, name += strlen(name) + 1)
-        write_sums(file, "object", name, &objects[i]);
+        write_totals(file, "object", name, &objects[i]);
     for (int32_t i = 0; i < scene->material_count; i++) {
         char number[32];
         snprintf(number, sizeof number, "material %ld", (long)i);
-        write_sums(file, "material",
+        write_totals(file, "material",
                    i < run->materials.count ? run->materials.name[i] : number,
                    &materials[i]);
     }

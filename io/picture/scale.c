@@ -43,7 +43,7 @@ static double value_at(const struct image *image, int64_t i, bool lux)
     return scale_value(&(struct rgb){{(double)p[0], (double)p[1], (double)p[2]}}, lux);
 }
 
-/* Returns the least of 1, 2 and 5 times a power of ten that is not below a value. */
+/* Returns the least of 1, 2 and 5 times a power of ten not below a value. */
 static double round_up(double value)
 {
     double unit = 1.0;

@@ -18,8 +18,8 @@ struct scale {
     int lines;   /* lines of equal values, this many below the top; 0: none */
 };
 
-/* Returns the scale of a picture: a round number not below 99 % of the values that are
- * not 0. `exposure`: 1 / top of it, in W/m^2; 0: chosen. */
+/* Returns the scale of a picture: a round number not below 99 % of the values but
+ * zeros. `exposure`: 1 / top of it, in W/m^2; 0: chosen. */
 struct scale scale_choose(const struct image *image, double exposure, bool lux,
                           int lines);
 

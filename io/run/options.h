@@ -19,7 +19,7 @@ enum show { SHOW_LIGHT, SHOW_RADIOSITY, SHOW_IRRADIANCE, SHOW_MESH, SHOW_OWNER,
 /* What --dump prints. */
 enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
 
-/* Axes that may be up, in the order of --up. */
+/* Upward axes, in the order of --up. */
 enum up { UP_GUESSED, UP_Y, UP_Z, UP_MINUS_Y, UP_MINUS_Z, UP_X, UP_MINUS_X };
 
 /* How a scene states the light of its lamps. */
@@ -49,7 +49,7 @@ struct options {
     enum show show;
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
     double exposure;          /* 0: chosen from the picture */
-    enum up up;               /* axis that is up */
+    enum up up;               /* the upward axis */
     enum ke ke;               /* of Ke, and of the emissions of a PLY file */
     struct rgb sky;           /* radiosity of a sky, W/m^2; 0: none */
     bool two_sided;           /* backs reflect */

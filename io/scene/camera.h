@@ -33,7 +33,7 @@ bool camera_of_text(struct camera *camera, struct text *text, struct error *erro
 /* Lets an axis (struct scene) be up in a view, unless the view looks along it. */
 void camera_set_up(struct camera *camera, int32_t up);
 
-/* Returns the axis that is up as a view says (struct scene); 0: it does not say, or looks
+/* Returns the upward axis as a view says (struct scene); 0: it does not say, or looks
  * along an axis, as in a plan, whose north is up in the picture. */
 int32_t camera_up_axis(const struct camera *camera);
 

@@ -1,8 +1,8 @@
 /* Maps of Kd and Ke. A picture is read once, for the faces of all its materials. The mean
- * over the whole picture would be that of a sheet on which parts lie apart: most of the
- * pictures of scanned things is black filler. Faces that differ, as those of a scanned
- * thing, become materials of their own; those of a wallpaper, which repeats on each, do
- * not. */
+ * over the whole picture would be the mean of a sheet on which parts lie apart: most of
+ * the pictures of scanned things is black filler. Faces unlike each other, as those of a
+ * scanned thing, become materials of their own; those of a wallpaper, which repeats on
+ * each, do not. */
 #include "io/scene/maps.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static struct order make_order(const struct mtl_table *table,
     return order;
 }
 
-/* Multiplies Kd (`k` is 0) or Ke (1) by the mean of its map, NULL if that is lost. */
+/* Multiplies Kd (`k` is 0) or Ke (1) by the mean of its map; NULL: the map is lost. */
 static void take_mean(struct mtl_entry *entry, int k, const struct rgb *mean)
 {
     struct rgb *colour =

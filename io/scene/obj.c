@@ -36,6 +36,11 @@ struct obj_corner {
     int32_t place;  /* texture coordinates; negative: none */
 };
 
+struct obj_corners {
+    struct obj_corner *at; /* [count] */
+    int64_t count, capacity;
+};
+
 struct obj_triangle {
     struct obj_corner corner[3];
     int32_t material; /* number in the material table */
@@ -68,8 +73,7 @@ struct obj_reader {
     struct obj_vectors places;     /* texture coordinates of all vt lines */
     bool has_normals;              /* a face has a normal with a direction */
     struct obj_triangles triangles;
-    struct obj_corner *corners;    /* of the current face */
-    int64_t corner_count, corner_capacity;
+    struct obj_corners corners;    /* of the current face */
     struct mtl_table materials;    /* NO_MATERIAL, NAMELESS, those with names */
     int32_t material;              /* of the next face */
     struct text_names libraries;   /* names tried by library_read() */
@@ -179,7 +183,7 @@ static bool read_place(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* Reads a corner: V, V/VT, V//VN or V/VT/VN. VT that is not there is 0. */
+/* Reads a corner: V, V/VT, V//VN or V/VT/VN. A missing VT is 0. */
 static bool parse_corner(const char *word, int64_t *vertex, int64_t *place,
                          int64_t *normal, bool *has_normal)
 {
@@ -241,21 +245,21 @@ static bool read_corner(struct obj_reader *reader, const char *word,
 
 static bool read_corners(struct obj_reader *reader, char *rest)
 {
-    reader->corner_count = 0;
+    reader->corners.count = 0;
     for (const char *word; (word = text_word(&rest)) != NULL;) {
-        if (reader->corner_count == CORNER_MAX)
+        if (reader->corners.count == CORNER_MAX)
             return error_set(reader->error, EXIT_USAGE,
                              "%s:%ld: face of more than %d corners", reader->text.path,
                              reader->text.line, CORNER_MAX);
-        RESERVE(reader->corners, &reader->corner_capacity, reader->corner_count + 1);
-        if (!read_corner(reader, word, &reader->corners[reader->corner_count]))
+        RESERVE(reader->corners.at, &reader->corners.capacity, reader->corners.count + 1);
+        if (!read_corner(reader, word, &reader->corners.at[reader->corners.count]))
             return false;
-        reader->corner_count++;
+        reader->corners.count++;
     }
-    if (reader->corner_count < 3)
+    if (reader->corners.count < 3)
         return error_set(reader->error, EXIT_USAGE,
                          "%s:%ld: face has %" PRId64 " corners instead of 3 or more",
-                         reader->text.path, reader->text.line, reader->corner_count);
+                         reader->text.path, reader->text.line, reader->corners.count);
     return true;
 }
 
@@ -264,13 +268,13 @@ static int32_t find_colour(struct obj_reader *reader)
 {
     const struct obj_vectors *colours = &reader->colours.vertices;
     struct vec3 sum = {0.0, 0.0, 0.0};
-    for (int64_t i = 0; i < reader->corner_count; i++) {
-        int32_t vertex = reader->corners[i].vertex;
+    for (int64_t i = 0; i < reader->corners.count; i++) {
+        int32_t vertex = reader->corners.at[i].vertex;
         if (vertex >= colours->count || colours->at[vertex].x < 0.0)
             return -1;
         sum = vec3_add(sum, colours->at[vertex]);
     }
-    double count = (double)reader->corner_count;
+    double count = (double)reader->corners.count;
     const struct material mean = {{{sum.x / count, sum.y / count, sum.z / count}},
                                   {{0.0, 0.0, 0.0}}};
     return palette_add(&reader->colours.faces, &mean);
@@ -280,7 +284,7 @@ static int32_t find_colour(struct obj_reader *reader)
 static void add_triangle(struct obj_reader *reader, const int32_t cut[3], int32_t colour,
                          bool goes_on)
 {
-    const struct obj_corner *corners = reader->corners;
+    const struct obj_corner *corners = reader->corners.at;
     reader->triangles.at[reader->triangles.count++] =
         (struct obj_triangle){{corners[cut[0]], corners[cut[1]], corners[cut[2]]},
                               reader->material, reader->group, colour, goes_on};
@@ -288,11 +292,11 @@ static void add_triangle(struct obj_reader *reader, const int32_t cut[3], int32_
 
 static void add_polygon(struct obj_reader *reader, int32_t colour)
 {
-    int32_t count = (int32_t)reader->corner_count;
+    int32_t count = (int32_t)reader->corners.count;
     struct vec3 *positions = alloc_array((size_t)count, sizeof *positions);
     int32_t *cut = alloc_array(3 * ((size_t)count - 2), sizeof *cut);
     for (int32_t i = 0; i < count; i++)
-        positions[i] = reader->vertices.at[reader->corners[i].vertex];
+        positions[i] = reader->vertices.at[reader->corners.at[i].vertex];
     polygon_triangulate(positions, count, cut);
     for (int32_t i = 0; i < count - 2; i++)
         add_triangle(reader, &cut[3 * i], colour, i > 0);
@@ -304,7 +308,7 @@ static bool read_face(struct obj_reader *reader, char *rest)
 {
     if (!read_corners(reader, rest))
         return false;
-    int64_t needed = reader->triangles.count + reader->corner_count - 2;
+    int64_t needed = reader->triangles.count + reader->corners.count - 2;
     if (needed > COUNT_MAX)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d triangles",
                          reader->text.path, reader->text.line, COUNT_MAX);
@@ -312,7 +316,7 @@ static bool read_face(struct obj_reader *reader, char *rest)
     RESERVE(triangles->at, &triangles->capacity, needed);
     reader->materials.entries[reader->material].used = true;
     int32_t colour = find_colour(reader);
-    if (reader->corner_count == 3)
+    if (reader->corners.count == 3)
         add_triangle(reader, (const int32_t[]){0, 1, 2}, colour, false);
     else
         add_polygon(reader, colour);
@@ -382,10 +386,11 @@ static bool read_lines(struct obj_reader *reader)
 /* Finds a defined material with a name like the first one without a definition. */
 static void find_meant(const struct mtl_table *materials, struct obj_repairs *repairs)
 {
-    for (int32_t i = 0; i < materials->names.count && !*repairs->meant; i++)
+    struct text_missing *missing = &repairs->materials;
+    for (int32_t i = 0; i < materials->names.count && !*missing->like; i++)
         if (materials->entries[i].defined &&
-            text_is_like(repairs->materials.first, materials->names.name[i]))
-            snprintf(repairs->meant, sizeof repairs->meant, "%s",
+            text_is_like(missing->first, materials->names.name[i]))
+            snprintf(missing->like, sizeof missing->like, "%s",
                      materials->names.name[i]);
 }
 
@@ -509,8 +514,8 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
-/* Takes the pictures of materials, if there are any: a face that differs from others has
- * the colour of its own part. */
+/* Takes the pictures of materials, if there are any: a face unlike others has the colour
+ * of its own part. */
 static void take_maps(struct obj_reader *reader)
 {
     struct obj_triangles *triangles = &reader->triangles;
@@ -585,7 +590,7 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
     alloc_free(reader.normals.at);
     alloc_free(reader.places.at);
     alloc_free(reader.triangles.at);
-    alloc_free(reader.corners);
+    alloc_free(reader.corners.at);
     mtl_free(&reader.materials);
     text_names_free(&reader.libraries);
     text_names_free(&reader.groups);

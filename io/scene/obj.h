@@ -28,7 +28,6 @@ struct obj_repairs {
     map_mean *mean_of;             /* finds the colours of a picture; NULL: of none */
     char exporter[80];             /* the first line, if it is a comment; or "" */
     struct text_missing materials; /* names without a definition: neutral grey instead */
-    char meant[128];               /* a defined name like the first of these, or "" */
     struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;           /* corners whose vn is absent or 0: without a normal */
     int64_t transparent;           /* used materials with d or Tr: opaque instead */

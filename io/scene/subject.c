@@ -4,7 +4,7 @@
  * -y, y is up, if along -z, z. Twins do not count, with which all lamps would shine both
  * ways. Else (tubes, windows, globes, no lamps) z is up if there is a floor across z, and
  * either none across y, or the scene is lowest along z, as rooms are. Without a floor on
- * either axis the sum of all faces as vectors counts: solids, and leaves that face
+ * either axis the sum of all faces as vectors counts: solids, and leaves facing
  * anywhere, add nothing to it, and ground, streets and roofs of a city point up. Then
  * lamps near the top along one axis hang below ceilings; then the program that wrote the
  * file, if it is one in which z is up. In all other cases y is up, as in most files.

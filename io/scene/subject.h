@@ -12,13 +12,13 @@ struct subject {
     struct vec3 low, high; /* box of the things, with some ground around them */
 };
 
-/* Guesses the axis that is up, y or z: see struct scene. Sets `*reason` to the reason, in
+/* Guesses the upward axis, y or z: see struct scene. Sets `*reason` to the reason, in
  * words behind "y is up: ". `words`: the first line of the file, of its exporter, or "".
  * The scene is prepared or not. */
 int32_t subject_guess_up(const struct scene *scene, const char *words,
                          const char **reason);
 
-/* Returns the coordinate of a vector along the axis that is up. */
+/* Returns the coordinate of a vector along the upward axis. */
 static inline double up_height(int32_t up, struct vec3 v)
 {
     return up < 0 ? -vec3_axis(v, -up - 1) : vec3_axis(v, up - 1);

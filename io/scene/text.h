@@ -78,6 +78,7 @@ bool text_is_like(const char *a, const char *b);
 struct text_missing {
     int64_t count;
     char first[128]; /* the first name, cut if long, for a message */
+    char like[128];  /* a name that is there, much like the first; or "" */
 };
 
 void text_missing_add(struct text_missing *missing, const char *name);

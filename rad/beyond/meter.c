@@ -7,7 +7,7 @@
  * the rays: where nothing is in the way of it, its light has no noise.
  *
  * The rays are BATCHES sequences of their own, so the scatter of the answers by one
- * sequence is that of the mean by chance. The errors of the leaves that are met come on
+ * sequence is the deviation of their mean. The errors of the leaves met by rays come on
  * top: their mean, for the leaves of a wall may be off together.
  *
  * The rows of the final gather (rad/beyond/gather/row.c) take a tenth of the rays, as
