@@ -389,6 +389,33 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
+/* Collective. What light in an open scene may be off by in the end, in parts of B: rows
+ * lose or make light at each reflection, besides what their leaves lose by their own
+ * rays. Of that as much is left as of the light straight from lamps, of irradiances `h`
+ * for radiosities `b`: little in a dark room, a hundredfold in a white one. `reflected`
+ * and `arriving`: buffers. */
+static double light_unsure(struct gathering *g, const struct rgb *h, const struct rgb *b,
+                           struct rgb *reflected, struct rgb *arriving)
+{
+    double unsure = 0.0, straight = 0.0;
+    if (g->closed)
+        return 0.0; /* the balance sees to it */
+    for (int64_t i = 0; i < g->count; i++)
+        reflected[i] = rgb_sub(b[i], gathering_material(g, i)->emission);
+    irradiances(g, reflected, false, arriving);
+    for (int c = 0; c < BANDS; c++) {
+        double missing = 0.0;
+        for (int64_t i = 0; i < g->count; i++) {
+            const struct cover *cover = &g->covers[i];
+            missing += cover->bare * ((double)cover->kept * reflected[i].band[c] -
+                                      arriving[i].band[c]);
+            straight += cover->bare * (h[i].band[c] - arriving[i].band[c]);
+        }
+        unsure += fabs(missing);
+    }
+    return straight > 0.0 ? fmin(1.0, unsure / straight) : 0.0;
+}
+
 /* Collective. The answer for pictures: light straight from lamps, and open shares. */
 static void share_answer(struct gathering *g)
 {
@@ -511,9 +538,10 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (int c = 0; c < BANDS; c++)
         told->closing = fmax(told->closing, fabs(g->missing.band[c]));
     judge(g, h, answer, done.residual, vote);
+    double unsure = vote->remaining + light_unsure(g, h, answer, b, r);
     place_radiosities(g, answer);
     final_gather_pull(g->gather, g->radiosity);
-    gathering_estimate_errors(g, vote->remaining);
+    gathering_estimate_errors(g, unsure);
     share_answer(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
