@@ -13,9 +13,10 @@
  * light is also gathered where interpolation does not hold (io/picture/shading.h): on a
  * leaf counted as covered but visible, as the side of a book standing out from its
  * neighbours; on a steep leaf, in the housing of a lamp. All points of a pixel on one
- * triangle are gathered together, by few segments; a second time by more where these are
- * noisy. Few segments may all arrive, or all miss, and seem sure: so by more, too, where
- * the mesh has another light of lamps and these are seen in part from around (cuts.h).
+ * triangle are gathered together, by few segments; again by more as long as these are
+ * noisy. Few segments may all arrive, or all miss, and seem sure, where lamps are seen in
+ * part from around (cuts.h), or are more than the segments, as the facets of a ball: so
+ * by more, too, where the mesh has another light of lamps there.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -70,7 +71,8 @@ struct pixel_roots {
 /* Light of a pixel. */
 struct pixel_light {
     struct rgb sum;   /* of the radiosities met by the camera rays, W/m^2 */
-    struct rgb apart; /* excess of mixed lamps' light over the mesh's */
+    struct rgb apart; /* excess of lamps' light over the mesh's, where segments may agree
+                         by chance */
     double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
 };
 
@@ -164,7 +166,8 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
         double h = light.lamps.band[c] + light.rest.band[c];
         double b = m->reflectance.band[c] * h;
         pixel->sum.band[c] += count * (other.band[c] + b);
-        pixel->apart.band[c] += light.mixed && !whole ? count * (b - mesh.band[c]) : 0.0;
+        if (light.by_chance && !whole)
+            pixel->apart.band[c] += count * (b - mesh.band[c]);
         rho = fmax(rho, m->reflectance.band[c]);
     }
     pixel->variance += count * count * rho * rho * light.variance;
@@ -238,32 +241,38 @@ static struct pixel_light show(const struct renderer *renderer,
     return pixel;
 }
 
-/* The factor on the fewest segments by which a pixel is found again; 1: a sure pixel.
- * The variance of n segments of a sequence falls as n^-4/3: as n^-1 by chance, and as
- * n^-3/2 on a grid that an edge cuts. */
+/* The factor on the fewest segments by which a pixel found by `now` times these is to be
+ * found again; at most `now`: a sure pixel. The variance of n segments of a sequence
+ * falls as n^-4/3: as n^-1 by chance, and as n^-3/2 on a grid that an edge cuts. */
 static int more_for(const struct renderer *renderer, const struct pixel_light *pixel,
-                    int count)
+                    int count, int now)
 {
     double square = rgb_sum(pixel->sum) * count * renderer->mean;
     double noise = pixel->variance / (NOISE * NOISE * square);
-    double apart = rgb_sum(pixel->apart) / APART;
+    double apart = now > 1 ? 0.0 : rgb_sum(pixel->apart) / APART;
     int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;
     if (!(noise > 1.0) && apart * apart <= square)
-        return 1;
-    double more = sqrt(noise) * sqrt(sqrt(noise));
+        return now;
+    double more = sqrt(now * noise) * sqrt(sqrt(now * noise));
     least = most / 4 > least ? most / 4 : least < most ? least : most;
     return more < least ? least : more < most ? (int)more : most;
 }
 
-/* The same by few segments, and where unsure by more, other ones. */
+/* The same by few segments, and where unsure by more, other ones; and so on. */
 static struct rgb show_well(const struct renderer *renderer,
                             const struct pixel_roots *view, uint64_t seed)
 {
     if (!renderer->gather)
         return show_mesh(renderer->shading, view);
     struct pixel_light pixel = show(renderer, view, seed, 1);
-    int more = renderer->shading ? more_for(renderer, &pixel, view->count) : 1;
-    return more > 1 ? show(renderer, view, seed, more).sum : pixel.sum;
+    int now = 0, more = 1;
+    while (renderer->shading && now < more) {
+        now = more;
+        more = more_for(renderer, &pixel, view->count, now);
+        if (more > now)
+            pixel = show(renderer, view, seed, more);
+    }
+    return pixel.sum;
 }
 
 struct rgb render_point(const struct renderer *renderer, int32_t root,

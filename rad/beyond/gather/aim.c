@@ -213,8 +213,8 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
- * Offers of near senders with a good part of the light of a segment are exact. Tells
- * whether some are mixed. Returns the light dealt to each segment, W/m^2. */
+ * Offers of near senders with a good part of the light of a segment are exact. Returns
+ * the light dealt to each segment, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
 {
@@ -235,8 +235,6 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         if (aims->offers[i].worth * segments >= FOR_EXACT * all &&
             is_near_sender(node, &own))
             aims->offers[i] = exact_offer(r, senders, node);
-        r->mixed |= aims->offers[i].worth > 0.0 && at->found != 1.0 &&
-                    (at->found > 0.0 || at->asked == 0);
         sum += aims->offers[i].worth;
         found += aims->offers[i].worth * at->found;
     }
@@ -245,6 +243,14 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         aims->offers[i].worth *=
             (found > 0.0 ? 0.5 : 1.0) + part * cuts->nodes[cut.first + i].found;
     return sum / segments;
+}
+
+/* True if few segments to a node may all find what others do not: they choose among its
+ * senders, or some of it is seen from around. */
+static bool is_by_chance(const struct senders *senders, const struct cut_node *node)
+{
+    return senders->nodes[node->node].child[0] >= 0 || node->asked == 0 ||
+           (node->found > 0.0 && node->found < 1.0);
 }
 
 /* A node sure to get a segment counts with its own light, shared among its segments. The
@@ -268,6 +274,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         const struct cut_node *node = &cuts->nodes[cut.first + i];
         double worth = offers[i].worth;
         bool sure = worth >= each;
+        r->by_chance |=
+            worth > 0.0 && (!sure || is_by_chance(cuts->senders, node));
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;

@@ -16,7 +16,7 @@ struct gather_light {
     struct rgb rest;  /* all other light; 0 unless asked for */
     double variance;  /* of both, by the choice of segments and rays, over bands,
                          (W/m^2)^2 */
-    bool mixed;       /* some lamps are seen in part from around */
+    bool by_chance;   /* few segments may agree by chance */
 };
 
 /* A look at a leaf: the light of its quarters by a few rays, in the same directions. */

@@ -104,6 +104,6 @@ struct gather_light final_gather_at(struct final_gather *gather,
         light.variance += row.chance[c];
     light.lamps = row.lamps;
     light.rest = sums.h;
-    light.mixed = r.mixed;
+    light.by_chance = r.by_chance;
     return light;
 }
