@@ -265,7 +265,7 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
         error[g->leaves[i]] = (float)largest;
         if (square + own > 0.0)
             errors[listed++] = (struct own_error){
-                fmin(1.0, sqrt(square / own) + remaining), g->areas[i]};
+                fmin(1.0, sqrt(square / own + remaining * remaining)), g->areas[i]};
     }
     rank_errors(errors, listed, &solver->beyond->answer->counts);
     if (light > 0.0) {
