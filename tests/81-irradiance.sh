@@ -67,12 +67,13 @@ all() {
     phr_on $1 $box --stats "$work/box.json" --at "$work/box.csv" --size 160x120 \
         --view scenes/cornell.view --report "$work/$1.csv" --show irradiance --lines 4 \
         -o "$work/$1.ppm" -o "$work/$1.pfm" -o "$work/$1.ply" -o "$work/$1.vtk" \
+        -o "$work/$1.glb" \
         >"$work/$1.out"
 }
 all 1
 for ranks in 2 3 4 7; do
     all $ranks
-    for kind in csv ppm pfm ply vtk out; do
+    for kind in csv ppm pfm ply vtk glb out; do
         check "the same .$kind on $ranks" cmp "$work/1.$kind" "$work/$ranks.$kind"
     done
 done

@@ -6,8 +6,9 @@
 
 ./phr scenes/cornell.obj --view scenes/cornell.view --size 96x64 --samples 1 \
     --epsilon 1e-2 --final-gather 64 --quiet -o "$work/a.ply" -o "$work/a.vtk" \
+    -o "$work/a.glb" \
     -o "$work/a.pfm" -o "$work/a.ppm" -o "$work/a.hdr" -o "$work/a.png"
-check "outputs of all formats" [ "$(ls "$work" | wc -l)" -eq 6 ]
+check "outputs of all formats" [ "$(ls "$work" | wc -l)" -eq 7 ]
 
 # has PROGRAM: true if it is installed; else a test that is skipped.
 has() {
@@ -91,6 +92,9 @@ if [ "$python" ]; then
     taps meshio "$python" tests/foreign.py meshio "$work"
 else
     tap 0 "meshio opens the .vtk # SKIP there is no meshio"
+fi
+if has python3; then
+    taps gltf python3 tests/foreign.py gltf "$work"
 fi
 if has blender; then
     taps blender blender -b --factory-startup -P tests/foreign.py -- blender "$work"

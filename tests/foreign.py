@@ -2,7 +2,7 @@
 # those of the .pfm, the .ppm and the .ply, read here byte by byte. Prints "ok NAME" or
 # "not ok NAME" lines. Called by tests/88-foreign.sh:
 #
-#   python3 tests/foreign.py vtk|meshio FOLDER
+#   python3 tests/foreign.py vtk|meshio|gltf FOLDER
 #   blender -b --factory-startup -P tests/foreign.py -- blender FOLDER
 
 import struct
@@ -119,6 +119,13 @@ def look_with_blender(folder):
     colours = [round(255 * x) for colour in mesh.vertex_colors[0].data
                for x in colour.color[:3]]
     check('Blender: colours', colours == columns(corners, 'red', 'green', 'blue'))
+    import numpy
+    numpy.bool = bool  # which Debian's add-on still asks for
+    bpy.ops.import_scene.gltf(filepath=folder + '/a.glb', merge_vertices=False)
+    mesh = bpy.context.object.data
+    check('Blender: triangles of .glb', len(mesh.polygons) == len(faces) and
+          [i for p in mesh.polygons for i in p.vertices] == columns(faces, 0, 1, 2))
+    check('Blender: its colours', len(mesh.color_attributes) == 1)
     width, height, codes = read_picture(folder + '/a.ppm')
     light = read_picture(folder + '/a.pfm')[2]
 
@@ -149,7 +156,57 @@ def look_with_meshio(folder):
           columns(vertices, *RADIOSITY))
 
 
+def look_at_gltf(folder):
+    """What Khronos' validator asks of such a file, and the numbers."""
+    import json
+
+    vertices, faces = read_ply(folder + '/a.ply')
+    data = open(folder + '/a.glb', 'rb').read()
+    magic, version, length, json_length, json_type = struct.unpack_from('<4sIII4s', data)
+    text = data[20:20 + json_length]
+    bin_length, bin_type = struct.unpack_from('<I4s', data, 20 + json_length)
+    rest = data[28 + json_length:]
+    check('glTF: head and chunks', (magic, version, length, json_type, bin_type) ==
+          (b'glTF', 2, len(data), b'JSON', b'BIN\0') and len(rest) == bin_length and
+          json_length % 4 == bin_length % 4 == 0)
+    gltf = json.loads(text)
+    sizes = {5123: 2, 5125: 4, 5126: 4}
+    widths = {'SCALAR': 1, 'VEC3': 3, 'VEC4': 4}
+    arrays, fits = [], gltf['buffers'][0]['byteLength'] == bin_length
+    for accessor in gltf['accessors']:
+        view = gltf['bufferViews'][accessor['bufferView']]
+        width = widths[accessor['type']] * sizes[accessor['componentType']]
+        fits = fits and view['byteLength'] == accessor['count'] * width and \
+            view['byteOffset'] % 4 == width % 4 == 0 and \
+            view['byteOffset'] + view['byteLength'] <= bin_length
+        kind = {5123: 'H', 5125: 'I', 5126: 'f'}[accessor['componentType']]
+        count = accessor['count'] * widths[accessor['type']]
+        arrays.append(struct.unpack_from('<%d%s' % (count, kind), rest,
+                                         view['byteOffset']))
+    check('glTF: accessors fit into views, views into the buffer', fits)
+    at, colours, corners = arrays
+    box = gltf['accessors'][0]
+    single = struct.Struct('<3f')
+    check('glTF: the box is that of the positions', [
+        single.pack(*box['min']), single.pack(*box['max'])] == [
+        single.pack(*[limit(at[k::3]) for k in range(3)]) for limit in (min, max)])
+    check('glTF: triangles', list(corners) == columns(faces, 0, 1, 2))
+    m = gltf['nodes'][0]['matrix']
+    placed = [sum(m[4 * k + row] * at[i + k] for k in range(3)) + m[12 + row]
+              for i in range(0, len(at), 3) for row in range(3)]
+    size = max(box['max'])
+    check('glTF: positions', all(abs(a - b) < 1e-6 * size for a, b in zip(
+        placed, columns(vertices, 'x', 'y', 'z'))))
+    exposure = gltf['asset']['extras']['exposure']
+    light = [min(1, exposure * x) * 65535 for x in columns(vertices, *RADIOSITY)]
+    check('glTF: colours are linear, times the exposure', all(
+        abs(light[3 * i + k] - colours[4 * i + k]) < 1 and colours[4 * i + 3] == 65535
+        for i in range(len(vertices)) for k in range(3)))
+    check('glTF: nothing lights it', gltf['extensionsUsed'] == ['KHR_materials_unlit'] and
+          gltf['materials'][0]['extensions'] == {'KHR_materials_unlit': {}})
+
+
 program, folder = sys.argv[-2:]
-{'vtk': look_with_vtk, 'meshio': look_with_meshio,
+{'vtk': look_with_vtk, 'meshio': look_with_meshio, 'gltf': look_at_gltf,
  'blender': look_with_blender}[program](folder)
 check(program + ' has opened all', True)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "io/picture/glb.h"
 #include "io/picture/imagefile.h"
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
@@ -89,6 +90,8 @@ static void write_meshes(struct run *run, const struct shading *shading,
         struct error error = {.code = EXIT_DONE};
         if (target->format == FORMAT_VTK)
             vtk_write(shading, &solved, target->path, &error);
+        else if (target->format == FORMAT_GLB)
+            glb_write(shading, &tone, target->path, &error);
         else if (target->format == FORMAT_PLY)
             mesh_write(shading, &tone, &solved, target->path, &error);
         run_lose(run, &error);

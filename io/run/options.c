@@ -278,7 +278,7 @@ static bool set_paper(const struct argument *a)
 #define OTHER(set) set, 0, 0, 0, NULL
 
 static const struct option OPTIONS[] = {
-    {"-o", "[FORMAT:]FILE", "picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk",
+    {"-o", "[FORMAT:]FILE", "picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk .glb",
      OTHER(add_output)},
     {"--view", "FILE", "of the -o behind it", OTHER(add_view)},
     {"--size", "WxH", "pixels (512x512)", OTHER(set_size)},
@@ -312,7 +312,7 @@ static const struct option OPTIONS[] = {
     {"--alpha", "A", "", REAL(criterion.alpha, 0, 1)},
     {"--two-sided", "", "backs reflect", FLAG(two_sided)},
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
-    {"--ke", "radiosity|radiance", "Blender: last", CHOICE(ke, "radiosity|radiance")},
+    {"--ke", "radiosity|radiance", "Blender: 2nd", CHOICE(ke, "radiosity|radiance")},
     {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
     {"--sky", "B|R,G,B", "around the scene", set_colour, FIELD(sky), 0, 1e30, NULL},
     {"--save-links", "F", "", TEXT(save_links)},

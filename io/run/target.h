@@ -8,7 +8,7 @@
 
 /* Formats of outputs, in the order of the table in io/run/target.c. */
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
-                     FORMAT_VTK };
+                     FORMAT_VTK, FORMAT_GLB };
 
 /* An output of -o. */
 struct target {

@@ -352,8 +352,8 @@ static void test_errors(void)
     check_refused("a.obj --Flat", "unknown option --Flat; did you mean --flat?");
     check_refused("a.obj -- --flat", "one scene at a time: a.obj and --flat");
     check_refused("a.obj -o ppm:",
-                  "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
-                  "or be FORMAT:FILE, as in ppm:FILE");
+                  "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply, .vtk or "
+                  ".glb, or be FORMAT:FILE, as in ppm:FILE");
     check_refused("a.obj --accuracy 101%",
                   "--accuracy: 101% is not between 0.01 % and 100 %");
     check_refused("a.obj --accuracy 5", "--accuracy: 5 is not between 0.0001 and 1; "
