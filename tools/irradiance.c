@@ -4,10 +4,12 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "io/picture/mesh.h"
 #include "mpi/picture.h"
 #include "rad/pushpull.h"
 
-enum { LEAF_RAYS = 64, LEAF_POINTS = 4, LEAF_FLOATS = 2 * BANDS + 1 };
+/* A leaf has as many rays as the final gather has in the mean, or RAYS without one. */
+enum { RAYS = 256, LEAF_POINTS = 4, LEAF_FLOATS = 2 * BANDS + 1 };
 
 float *irradiance_deal(struct run *run, int64_t count, int floats,
                        void (*read)(const struct meter *meter, const void *context,
@@ -33,6 +35,7 @@ struct unknown {
     const struct forest *forest;
     int32_t *leaves; /* [count], in the order of forest_next_leaf() */
     int64_t count;
+    int rays;        /* at each */
 };
 
 static void read_leaf(const struct meter *meter, const void *context, int64_t item,
@@ -47,7 +50,8 @@ static void read_leaf(const struct meter *meter, const void *context, int64_t it
     for (int k = 0; k < LEAF_POINTS; k++) {
         struct triangle child = triangle_child(&t, k);
         struct metered reading =
-            meter_read(meter, triangle_centroid(&child), normal, LEAF_RAYS,
+            meter_read(meter, triangle_centroid(&child), normal,
+                       unknown->rays / LEAF_POINTS,
                        hash_mix(id_number(id)) + (uint64_t)k);
         for (int c = 0; c < BANDS; c++) {
             floats[c] += (float)(reading.irradiance.band[c] / LEAF_POINTS);
@@ -99,7 +103,9 @@ void irradiance_make(struct run *run, struct irradiance *found)
 {
     const struct forest *forest = run->solver->model.forest;
     size_t patches = (size_t)forest->count;
-    struct unknown unknown = {forest, alloc_array(patches, sizeof *unknown.leaves), 0};
+    int rays = run->solver->model.criterion.final_gather;
+    struct unknown unknown = {forest, alloc_array(patches, sizeof *unknown.leaves), 0,
+                              rays > 0 ? rays : RAYS};
     make_white(forest, found);
     if (beyond_answer(run->solver)->error)
         found->error = alloc_array(patches, sizeof *found->error);
@@ -126,6 +132,32 @@ void irradiance_make(struct run *run, struct irradiance *found)
     forest_average(&found->forest);
     alloc_free(read);
     alloc_free(unknown.leaves);
+}
+
+struct rgb *irradiance_at_vertices(const struct irradiance *found,
+                                   const struct shading *shading)
+{
+    const struct forest *forest = shading->forest;
+    size_t vertices = (size_t)shading->vertex_count;
+    struct rgb *at = alloc_array(vertices, sizeof *at);
+    double *leaves = alloc_array(vertices, sizeof *leaves);
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = mesh_next_leaf(forest, leaf)) {
+        const struct material *m = forest_material(forest, leaf);
+        for (int k = 0; k < 3; k++) {
+            int32_t v = shading->corners[3 * (int64_t)leaf + k];
+            leaves[v] += 1.0;
+            for (int c = 0; c < BANDS; c++) {
+                double rho = m->reflectance.band[c], mean = at[v].band[c];
+                double b = shading->values[v].band[c] - m->emission.band[c];
+                double h = found->forest.radiosity[leaf].band[c];
+                at[v].band[c] = rho > 0.0 ? real_max(0.0, b) / rho
+                                          : mean + (h - mean) / leaves[v];
+            }
+        }
+    }
+    alloc_free(leaves);
+    return at;
 }
 
 void irradiance_free(struct irradiance *irradiance)

@@ -2,6 +2,7 @@
 #ifndef TOOLS_IRRADIANCE_H
 #define TOOLS_IRRADIANCE_H
 
+#include "io/picture/shading.h"
 #include "rad/beyond/meter.h"
 #include "tools/run.h"
 
@@ -17,6 +18,12 @@ struct irradiance {
 /* Collective. Finds H of all leaves, on all ranks: where all bands are reflected it is
  * (B - E) / rho, else a meter's, at four points of the leaf. */
 void irradiance_make(struct run *run, struct irradiance *found);
+
+/* Returns H at the vertices of the run's shading: (B - E) / rho, or the mean of leaves
+ * around; all leaves around a vertex are of one material. [vertex_count], to be freed
+ * with alloc_free(). */
+struct rgb *irradiance_at_vertices(const struct irradiance *found,
+                                   const struct shading *shading);
 void irradiance_free(struct irradiance *irradiance);
 
 /* Collective. Reads a meter `count` times, each on one rank: `read` fills in `floats`

@@ -217,12 +217,12 @@ static bool show_meshes(struct run *run)
     double start = comm_seconds();
     struct irradiance irradiance;
     irradiance_make(run, &irradiance);
-    struct shading *white = shade_leaves(run, &irradiance, false);
     struct shading *shading = shade_leaves(run, NULL, false);
+    struct rgb *at = irradiance_at_vertices(&irradiance, shading);
     if (run_goes_on(run) && run->comm.rank == 0)
-        write_meshes(run, shading, &irradiance, white->values);
+        write_meshes(run, shading, &irradiance, at);
+    alloc_free(at);
     shading_destroy(shading);
-    shading_destroy(white);
     irradiance_free(&irradiance);
     run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
     return run_agree(run);
