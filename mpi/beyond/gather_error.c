@@ -255,7 +255,9 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
             double rho = m->reflectance.band[c], h = irradiance_of(g, i, c);
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             double reflected = b.band[c] - m->emission.band[c];
-            largest = fmax(largest, BOUND * deviation + remaining * b.band[c]);
+            double lacks = remaining * b.band[c];
+            largest = fmax(largest,
+                           BOUND * sqrt(deviation * deviation + lacks * lacks));
             by_rays += g->areas[i] * rho * rho * rays[i].band[c];
             by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;

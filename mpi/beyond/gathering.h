@@ -75,7 +75,7 @@ static inline void gathering_share_field(struct gathering *g, size_t offset, siz
 
 /* Collective. A bound on the error of B of 95 % of leaves, W/m^2, by the largest
  * deviation of a band, and the RMS of deviations by rays and by the mesh: both go into
- * the solver's answer. `remaining`: the most that the solution may lack, in parts of B.
+ * the solver's answer. `remaining`: what the solution may lack, in parts of B.
  * Pre: g->radiosity is the solution. */
 void gathering_estimate_errors(struct gathering *g, double remaining);
 
