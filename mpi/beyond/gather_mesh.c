@@ -60,6 +60,9 @@ enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 
 enum { ROUNDS = 6 };
 
+/* Fewest rays of a black leaf. */
+enum { FEWEST = 4 };
+
 /* Few rays of a look may miss what is bright: the mean noise of all leaves, relative to
  * their light, counts as so many more. */
 static const double UNSURE_RAYS = 32.0;
@@ -431,19 +434,42 @@ static void raise_cuts(struct gather_mesh *mesh, const struct forest *forest)
 
 /* --- rays --- */
 
-/* Shares rays and segments in proportion to the square root of area times variance. Black
- * leaves have the fewest, for the balance of power alone, and exact rows, which make no
- * use of theirs, the mean number. */
+static bool is_black(const struct forest *forest, int32_t leaf)
+{
+    return !(rgb_sum(forest_material(forest, leaf)->reflectance) > 0.0);
+}
+
+/* Rays of a black leaf, for the balance of power alone, whose noise most comes from rows
+ * of large leaves: the mean number for a leaf of the mean area or more where all light is
+ * reflected, and in proportion fewer for small leaves, or where most surface is black, as
+ * below a sky. `reflectance` and `area`: means of all leaves. */
+static int rays_of_black(const struct looking *l, int32_t leaf, double reflectance,
+                         double area)
+{
+    double part = reflectance * forest_area(l->solver->model.forest, leaf) / area;
+    int rays = (int)(fmin(1.0, part) * l->gather->rays);
+    return rays > FEWEST ? rays : FEWEST;
+}
+
+/* Shares rays and segments in proportion to the square root of area times variance. Exact
+ * rows, which make no use of theirs, have the mean number. */
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
     double *worth = alloc_array(2 * (size_t)mesh->count, sizeof *worth);
     int *shots = alloc_array(2 * (size_t)mesh->count, sizeof *shots);
+    double reflectance = 0.0, area = 0.0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        double own = forest_area(forest, mesh->leaves[i]);
+        area += own;
+        reflectance +=
+            own / BANDS * rgb_sum(forest_material(forest, mesh->leaves[i])->reflectance);
+    }
     for (int64_t k = 0; k < 2 * mesh->count; k++) {
         int32_t leaf = mesh->leaves[k / 2];
         const struct known *known = &l->known[leaf];
-        bool black = !(rgb_sum(forest_material(forest, leaf)->reflectance) > 0.0);
+        bool black = is_black(forest, leaf);
         double variance = k % 2 ? known->by_segment : known->by_ray;
         worth[k] = black || known->by_ray == IS_EXACT
                        ? -1.0
@@ -457,6 +483,9 @@ static void share_rays(struct looking *l)
         mesh->exact[i] = l->known[mesh->leaves[i]].by_ray == IS_EXACT;
         mesh->rays[i] = mesh->exact[i] ? l->gather->rays : shots[2 * i];
         mesh->segments[i] = mesh->exact[i] ? l->gather->rays : shots[2 * i + 1];
+        if (!mesh->exact[i] && is_black(forest, mesh->leaves[i]))
+            mesh->rays[i] = mesh->segments[i] = rays_of_black(
+                l, mesh->leaves[i], reflectance / area, area / (double)mesh->count);
     }
     alloc_free(shots);
     alloc_free(worth);
