@@ -445,8 +445,8 @@ static void test_white_rooms(void)
 }
 
 /* A lamp 1 cm below the ceiling of a white room, which its black back darkens: .1565 of
- * its light falls on that, by 1,024 rays at epsilon 1e-5. Leaves are wider than the gap and
- * give it too much, which counts 500 times, and is claimed. */
+ * its light falls on that, by 1,024 rays at epsilon 1e-5. Leaves are wider than the gap
+ * and give it too much, which counts 500 times, and is claimed. */
 static void test_white_gap(const char *words, double most)
 {
     struct soup soup = {0};
