@@ -77,8 +77,8 @@ said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
 notes="phr: $work/notes.obj: warning:"
 texture="material(s) with a texture: Kd, or Ke, times the mean over its faces counts"
 texture="$texture; where that cannot be read (1, first: $work/wood.png), Kd alone,"
-texture="$texture or .5 if it is 1; PNG and PPM are read: \`magick a.jpg a.png\`"
-texture="$texture makes one"
+texture="$texture or .5 if it is 1; PNG of 8 bits and PPM are read: \`magick a.jpg"
+texture="$texture a.png\` makes one"
 unread="material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and Ke 0"
 expected="$notes 1 material file(s) missing or not readable (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)

@@ -50,7 +50,7 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
     if (read->textures.count > 0)
         snprintf(lost, sizeof lost,
                  "; where that cannot be read (%lld, first: %s), Kd alone, or .5 if it "
-                 "is 1; PNG and PPM are read: `magick a.jpg a.png` makes one",
+                 "is 1; PNG of 8 bits and PPM are read: `magick a.jpg a.png` makes one",
                  (long long)read->textures.count, read->textures.first);
     warn(run, read->textured,
          "material(s) with a texture: Kd, or Ke, times the mean over its faces counts%s",
