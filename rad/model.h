@@ -45,12 +45,14 @@ enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
 enum { TESTS_PER_FORM_FACTOR = 12 }; /* tests taking as long as one: rad/link.c */
 
 struct cluster_light;
+struct spaces;
 
 struct model {
     const struct scene *scene;
     const struct octree *octree;
     struct forest *forest;
     struct cluster_light *clusters; /* above the roots; NULL: none */
+    const struct spaces *spaces;    /* with a light of their own; NULL: one */
     struct criterion criterion;
     struct method method;
     struct flux_unit flux_unit; /* of powers added by ranks */

@@ -10,8 +10,10 @@ static inline struct cluster_tree *tree_create(const struct scene *scene,
                                                const struct octree *octree)
 {
     int32_t *met = octree ? places_met(scene, octree, 0, scene_root_count(scene)) : NULL;
-    struct cluster_tree *tree = cluster_tree_build(scene, met);
+    struct spaces *spaces = spaces_create(scene, met);
+    struct cluster_tree *tree = cluster_tree_build(scene, spaces);
     alloc_free(met);
+    spaces_destroy(spaces);
     return tree;
 }
 

@@ -25,13 +25,14 @@ static int32_t *places_gather(const struct comm *comm, const struct scene *scene
 
 static struct node_block tree_broadcast(const struct comm *comm,
                                         struct node_policy policy,
-                                        const struct scene *scene, const int32_t *met,
+                                        const struct scene *scene,
+                                        const struct spaces *spaces,
                                         struct cluster_tree **tree)
 {
     struct node_block block = {.data = NULL};
     struct pack count = {0};
     double start = comm_seconds();
-    *tree = comm->rank == 0 ? cluster_tree_build(scene, met) : NULL;
+    *tree = comm->rank == 0 ? cluster_tree_build(scene, spaces) : NULL;
     double seconds = comm_seconds() - start;
     block.seconds = seconds;
     if (comm->size == 1)
@@ -58,11 +59,14 @@ void above_create(struct solver *solver)
     double start = comm_seconds();
     int32_t *met = solver->model.octree ? places_gather(comm, scene, solver->model.octree)
                                         : NULL;
-    solver->account.seconds[PHASE_SPACES] = comm_seconds() - start;
-    beyond->tree_block = tree_broadcast(comm, node_policy(), scene, met, &beyond->tree);
+    beyond->spaces = spaces_create(scene, met);
     alloc_free(met);
+    solver->account.seconds[PHASE_SPACES] = comm_seconds() - start;
+    beyond->tree_block =
+        tree_broadcast(comm, node_policy(), scene, beyond->spaces, &beyond->tree);
     solver->account.seconds[PHASE_TREE] = beyond->tree_block.seconds;
     solver->memory.clusters = beyond->tree->count;
+    solver->model.spaces = beyond->spaces;
     solver->model.clusters = cluster_light_create(beyond->tree);
     solver->model.forest->above = alloc_array((size_t)scene_root_count(scene),
                                               sizeof *solver->model.forest->above);
@@ -72,6 +76,7 @@ void above_free(struct solver *solver)
 {
     cluster_light_destroy(solver->model.clusters);
     cluster_tree_destroy(solver->beyond->tree);
+    spaces_destroy(solver->beyond->spaces);
     node_block_destroy(&solver->beyond->tree_block);
 }
 

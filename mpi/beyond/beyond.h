@@ -30,6 +30,7 @@ struct answer {
 
 /* The state of a rank beyond the paper's. */
 struct beyond {
+    struct spaces *spaces;        /* NULL: there is no tree */
     struct cluster_tree *tree;    /* above the roots; NULL: none */
     struct node_block tree_block; /* the memory of a tree that is a view */
     struct conjugate *descent;

@@ -64,7 +64,8 @@ struct vote descent_vote(struct solver *solver, const struct ballot *sum)
     struct forest *forest = solver->model.forest;
     struct conjugate *cg = solver->beyond->descent;
     double light = flux_to_watts(solver->model.flux_unit, sum->light);
-    double remaining = sum->light > 0 ? conjugate_missing(cg, forest) / light : 0.0;
+    double missing = conjugate_missing(cg, forest, solver->model.spaces);
+    double remaining = sum->light > 0 ? missing / light : 0.0;
     double wanted = wanted_of(solver, sum);
     struct vote vote = vote_make(solver, sum, remaining);
     bool more = !(remaining <= wanted) && !vote.diverged;

@@ -2,10 +2,11 @@
  *
  * A node is cut twice in two. Each cut is across the coordinate in which its roots differ
  * most: three of place, three of direction, and size, so the roots of a group lie
- * together, look the same way, and are alike in size. The cut is at the mean. Where lamps
- * and other surfaces are mixed, the cut is between these: a mean over both describes
- * neither. Then it is between spaces not connected by a few rays from each root: a
- * cluster of both would carry light through the wall in between.
+ * together, look the same way, and are alike in size. The cut is at the mean. Spaces with
+ * a light of their own are parted first. Where lamps and other surfaces are mixed, the
+ * cut is between these: a mean over both describes neither. Then it is between other
+ * parts not connected by a few rays from each root: a cluster of both would carry light
+ * through the wall in between.
  *
  * Roots are weighed by their area plus the mean area: by area alone, a large wall decides
  * where the furniture before the wall is cut; by number alone, the furniture decides
@@ -24,12 +25,11 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
 #include "geom/stop.h"
-#include "rad/beyond/sample.h"
 
-/* Keys compared by scatter: place, direction, size; and two of 0 and 1. */
-enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS };
+/* Keys compared by scatter: place, direction, size; the number of a space; and two of 0
+ * and 1. */
+enum { KEYS = 7, SPACE = KEYS, NO_LAMP, OTHER_PART, ALL_KEYS };
 
 /* Scene units of place worth a unit of direction, and one of the root of area. The square
  * of the former is at most so many times the variance of place: a small thing in a wide
@@ -46,13 +46,16 @@ struct member {
 struct cutter {
     struct cluster_tree *tree;
     const struct scene *scene;
+    const struct spaces *spaces;
     double *share;      /* [all roots + 1] area of the items in each space; else 0 */
     struct member *items; /* [tree->root_count] in the tree's order */
     struct member *spare; /* [tree->root_count] room for a cut */
 };
 
-static struct member member_of(const struct scene *scene, int32_t root, double mean_area)
+static struct member member_of(const struct cutter *cutter, int32_t root,
+                               double mean_area)
 {
+    const struct scene *scene = cutter->scene;
     struct triangle t = scene_root_triangle(scene, root);
     struct vec3 centre = triangle_centroid(&t),
                 normal = scene_root_plane(scene, root).normal;
@@ -63,6 +66,8 @@ static struct member member_of(const struct scene *scene, int32_t root, double m
         item.key[3 + axis] = vec3_axis(normal, axis);
     }
     item.key[6] = SIZE_WEIGHT * sqrt(area);
+    item.key[SPACE] = cutter->spaces->of[root];
+    item.space = cutter->spaces->part[root];
     item.key[NO_LAMP] = !material_emits(scene_root_material(scene, root));
     return item;
 }
@@ -117,71 +122,8 @@ static int widest_key(const struct member *items, int32_t count, double *mean)
 /* The least part of an area to make a space worth a cut. */
 static const double SPACE_LEAST = 1.0 / 16.0;
 
-static int32_t space_of(int32_t *up, int32_t root)
-{
-    while (up[root] != root) {
-        up[root] = up[up[root]];
-        root = up[root];
-    }
-    return root;
-}
-
-/* The roots of a space are taken to be outside if too few to enclose a space. */
-static void join_small_spaces(int32_t *space, int32_t all)
-{
-    enum { TETRAHEDRON = 4 };
-    int32_t *roots = alloc_array((size_t)all + 1, sizeof *roots);
-    for (int32_t root = 0; root < all; root++)
-        roots[space[root]]++;
-    for (int32_t root = 0; root < all; root++)
-        if (roots[space[root]] < TETRAHEDRON)
-            space[root] = space[all];
-    alloc_free(roots);
-}
-
-int32_t *places_met(const struct scene *scene, const struct octree *octree,
-                    int32_t first, int32_t end)
-{
-    int32_t all = scene_root_count(scene);
-    int32_t *met = alloc_array(SPACE_RAYS * (size_t)(end - first), sizeof *met);
-    int32_t *at = met;
-    struct octree_counts counts = {0};
-    for (int32_t root = first; root < end && !stop_is_asked(); root++) {
-        struct triangle t = scene_root_triangle(scene, root);
-        for (int i = 0; i < SPACE_RAYS; i++, at++) {
-            *at = -1;
-            if (!(scene_root_area(scene, root) > 0.0))
-                continue;
-            uint64_t seed = hash_mix((uint64_t)root) + 8 * (uint64_t)i;
-            struct vec3 normal = scene_root_plane(scene, root).normal;
-            struct half_line ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
-            *at = root_met(scene, octree, &ray, all, &counts);
-        }
-    }
-    return met;
-}
-
-/* [all roots + 1] the space of each, by one of its roots: a few rays connect the roots of
- * a space. A root seeing the outside, which has the last number, is in the outside's
- * space. Without rays there is but one. */
-static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
-{
-    int32_t all = scene_root_count(scene);
-    int32_t *up = alloc_array((size_t)all + 1, sizeof *up);
-    for (int32_t root = 0; root <= all; root++)
-        up[root] = met ? root : 0;
-    for (int32_t root = 0; root < all && met; root++)
-        for (int i = 0; i < SPACE_RAYS; i++, met++)
-            if (*met >= 0)
-                up[space_of(up, root)] = space_of(up, *met);
-    for (int32_t root = 0; root <= all; root++)
-        up[root] = space_of(up, root);
-    join_small_spaces(up, all);
-    return up;
-}
-
 /* Finds the space with the largest part of the items' area, and sets the items' key
- * OTHER_SPACE. True if the space has not all, but enough for a cut. */
+ * OTHER_PART. True if the space has not all, but enough for a cut. */
 static bool find_largest_space(struct cutter *cutter, struct member *items, int32_t count)
 {
     double sum = 0.0;
@@ -197,11 +139,19 @@ static bool find_largest_space(struct cutter *cutter, struct member *items, int3
     double share = cutter->share[largest];
     bool has_others = false;
     for (int32_t i = 0; i < count; i++) {
-        items[i].key[OTHER_SPACE] = items[i].space != largest;
+        items[i].key[OTHER_PART] = items[i].space != largest;
         has_others = has_others || items[i].space != largest;
         cutter->share[items[i].space] = 0.0;
     }
     return has_others && share >= SPACE_LEAST * sum;
+}
+
+static double mean_space(const struct member *items, int32_t count)
+{
+    double sum = 0.0;
+    for (int32_t i = 0; i < count; i++)
+        sum += items[i].key[SPACE];
+    return sum / count;
 }
 
 /* Cuts items in two, neither half larger than `most`. Returns the size of the first. */
@@ -212,10 +162,12 @@ static int32_t cut(struct cutter *cutter, int32_t from, int32_t to, int64_t most
         stop_is_asked()) /* then any tree will do: none will be used */
         return (count + 1) / 2;
     struct member *items = cutter->items + from;
-    int32_t first = part_items(cutter, from, to, NO_LAMP, 1.0);
+    int32_t first = part_items(cutter, from, to, SPACE, mean_space(items, count));
+    if (first == 0 || first == count)
+        first = part_items(cutter, from, to, NO_LAMP, 1.0);
     if (first == 0 || first == count)
         first = find_largest_space(cutter, items, count)
-                    ? part_items(cutter, from, to, OTHER_SPACE, 1.0) : 0;
+                    ? part_items(cutter, from, to, OTHER_PART, 1.0) : 0;
     if (first == 0 || first == count) {
         double mean = 0.0;
         int key = widest_key(items, count, &mean);
@@ -226,8 +178,9 @@ static int32_t cut(struct cutter *cutter, int32_t from, int32_t to, int64_t most
 }
 
 /* A root in the form of a cluster. */
-static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
+static struct cluster cluster_of_root(const struct cutter *cutter, int32_t root)
 {
+    const struct scene *scene = cutter->scene;
     struct triangle t = scene_root_triangle(scene, root);
     struct vec3 normal = scene_root_plane(scene, root).normal;
     const struct material *material = scene_root_material(scene, root);
@@ -241,6 +194,7 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
         .reflecting = rgb_sum(material->reflectance) > 0.0 ? area : 0.0,
         .reflectance = material->reflectance,
         .is_dark = material_is_dark(material),
+        .space = cutter->spaces->of[root],
     };
 }
 
@@ -259,6 +213,7 @@ static void add_child(struct cluster *parent, const struct cluster *child)
     parent->area += child->area;
     parent->reflecting += child->reflecting;
     parent->is_dark = (fresh || parent->is_dark) && child->is_dark;
+    parent->space = fresh || parent->space == child->space ? child->space : -1;
 }
 
 /* Pre: the same is known of the clusters below. */
@@ -269,14 +224,23 @@ static void sum_up(struct cutter *cutter, struct cluster *cluster)
         int32_t node = cluster->child[k];
         struct cluster child = node_is_cluster(node)
                                    ? tree->clusters[~node]
-                                   : cluster_of_root(cutter->scene, node);
+                                   : cluster_of_root(cutter, node);
         add_child(cluster, &child);
     }
     for (int c = 0; c < BANDS && cluster->reflecting > 0.0; c++)
         cluster->reflectance.band[c] /= cluster->reflecting;
 }
 
-/* Where the four parts of a cluster end. `below`: most roots in a child. */
+static bool has_several_spaces(const struct cutter *cutter, int32_t from, int32_t to)
+{
+    for (int32_t i = from; i < to; i++)
+        if (cutter->items[i].key[SPACE] != cutter->items[from].key[SPACE])
+            return true;
+    return false;
+}
+
+/* Where the four parts of a cluster end. `below`: most roots in a child. A space has the
+ * tree that it has alone. */
 static void cut_in_four(struct cutter *cutter, int32_t from, int32_t to, int64_t below,
                         int32_t ends[4])
 {
@@ -286,9 +250,12 @@ static void cut_in_four(struct cutter *cutter, int32_t from, int32_t to, int64_t
         return;
     }
     int32_t middle = from + cut(cutter, from, to, 2 * below);
-    ends[0] = from + cut(cutter, from, middle, below);
+    bool spaces = has_several_spaces(cutter, from, to);
+    bool whole = spaces && !has_several_spaces(cutter, from, middle);
+    ends[0] = whole ? middle : from + cut(cutter, from, middle, below);
     ends[1] = middle;
-    ends[2] = middle + cut(cutter, middle, to, below);
+    whole = spaces && !has_several_spaces(cutter, middle, to);
+    ends[2] = whole ? to : middle + cut(cutter, middle, to, below);
     ends[3] = to;
 }
 
@@ -328,7 +295,8 @@ static void list_items(struct cutter *cutter)
     double mean_area = scene_area(scene) / count;
     for (int32_t root = 0; root < all; root++)
         if (scene_root_area(scene, root) > 0.0)
-            cutter->items[cutter->tree->root_count++] = member_of(scene, root, mean_area);
+            cutter->items[cutter->tree->root_count++] =
+                member_of(cutter, root, mean_area);
 }
 
 /* The arrays by place and by root. */
@@ -344,17 +312,14 @@ static void list_places(struct cutter *cutter)
     }
 }
 
-struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met)
+struct cluster_tree *cluster_tree_build(const struct scene *scene,
+                                        const struct spaces *spaces)
 {
     struct cluster_tree *tree = alloc_array(1, sizeof *tree);
-    struct cutter cutter = {.tree = tree, .scene = scene};
+    struct cutter cutter = {.tree = tree, .scene = scene, .spaces = spaces};
     list_items(&cutter);
     cutter.share =
         alloc_array((size_t)scene_root_count(scene) + 1, sizeof *cutter.share);
-    int32_t *space = find_spaces(scene, met);
-    for (int32_t i = 0; i < tree->root_count; i++)
-        cutter.items[i].space = space[cutter.items[i].root];
-    alloc_free(space);
     size_t count = (size_t)tree->root_count, all = (size_t)scene_root_count(scene);
     tree->all_roots = (int32_t)all;
     tree->clusters = alloc_array(count, sizeof *tree->clusters);

@@ -16,7 +16,7 @@
 
 #include "geom/pack.h"
 #include "geom/scene.h"
-#include "octree/octree.h"
+#include "rad/beyond/spaces.h"
 #include "rad/patch.h"
 
 /* The top is cluster 0. Ask for NODE_NONE first, which is below 0, too. */
@@ -35,6 +35,7 @@ struct cluster {
     int32_t child[4];                    /* nodes; NODE_NONE where there are fewer */
     int32_t first, end; /* its roots are roots[first] to before roots[end] */
     uint32_t hierarchy;                  /* of its ID */
+    int32_t space;                       /* of its roots; -1: of several */
     bool is_dark;                        /* none of its roots reflects or emits */
 };
 
@@ -47,18 +48,9 @@ struct cluster_tree {
     bool is_view;             /* the arrays lie in memory of others */
 };
 
-/* Rays from each root, which tell its space. */
-enum { SPACE_RAYS = 4 };
-
-/* [SPACE_RAYS for each of the roots first .. end - 1] where its rays end: a root, the
- * number of all roots for the outside, or -1 (on a back, or the root has no area). To be
- * freed with alloc_free(). */
-int32_t *places_met(const struct scene *scene, const struct octree *octree,
-                    int32_t first, int32_t end);
-
-/* The tree over all roots with an area; at least one has. Roots are parted into spaces by
- * the places met by all roots; NULL: all are in one. O(k log k) for k roots. */
-struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met);
+/* The tree over all roots with an area; at least one has. O(k log k) for k roots. */
+struct cluster_tree *cluster_tree_build(const struct scene *scene,
+                                        const struct spaces *spaces);
 void cluster_tree_destroy(struct cluster_tree *tree);
 
 /* Into a block, and as found there: read-only, valid as long as the block. */

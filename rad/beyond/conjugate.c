@@ -110,12 +110,16 @@ static double change(const struct conjugate *cg, const struct forest *forest, in
            (cg->radiosity[i].band[c] + cg->residual[i].band[c]);
 }
 
-double conjugate_missing(const struct conjugate *cg, const struct forest *forest)
+double conjugate_missing(const struct conjugate *cg, const struct forest *forest,
+                         const struct spaces *spaces)
 {
     double sum = 0.0;
-    for (int64_t i = 0; i < cg->count; i++)
+    for (int64_t i = 0; i < cg->count; i++) {
+        uint32_t root = forest->patches[cg->leaves[i]].id.root;
+        double dimness = spaces ? space_dimness(spaces, root) : 1.0;
         for (int c = 0; c < BANDS; c++)
-            sum += cg->weight[i].band[c] * fabs(change(cg, forest, i, c));
+            sum += dimness * (cg->weight[i].band[c] * fabs(change(cg, forest, i, c)));
+    }
     return cg->share * cg->growth / (1.0 - cg->growth) * sum;
 }
 

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "rad/beyond/spaces.h"
 #include "rad/patch.h"
 
 struct conjugate {
@@ -36,8 +37,10 @@ void conjugate_free(struct conjugate *cg);
 void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows);
 
 /* A bound on the light missing in the radiosities after an iteration, W in square scene
- * units. */
-double conjugate_missing(const struct conjugate *cg, const struct forest *forest);
+ * units; that of a dim space counts as often as the brightest has more light. `spaces`:
+ * NULL for one. */
+double conjugate_missing(const struct conjugate *cg, const struct forest *forest,
+                         const struct spaces *spaces);
 
 /* After an iteration: sets all radiosities for the next one. */
 void conjugate_step(struct conjugate *cg, struct forest *forest);

@@ -6,35 +6,9 @@
 #include "rad/beyond/patch_link.h"
 #include "rad/beyond/range.h"
 
-#include <math.h>
-
-/* The part counted of the light of a closed scene, spread evenly: in ordinary rooms less
- * than the emitted light, in white ones many times as much. */
-static const double LASTING = 0.1;
-
-/* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of
- * means. */
-static struct rgb typical_radiosity(const struct scene *scene)
-{
-    struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbing = {{0.0, 0.0, 0.0}};
-    for (int32_t root = 0; root < scene_root_count(scene); root++) {
-        const struct material *material = scene_root_material(scene, root);
-        double area = scene_root_area(scene, root);
-        for (int c = 0; c < BANDS; c++) {
-            emitted.band[c] += area * material->emission.band[c];
-            absorbing.band[c] += area * (1.0 - material->reflectance.band[c]);
-        }
-    }
-    for (int c = 0; c < BANDS; c++)
-        emitted.band[c] /= absorbing.band[c];
-    return emitted;
-}
-
-/* As emitted or, where light is reflected for long, LASTING of it spread evenly. */
 static double light_power(struct model *model)
 {
-    struct rgb typical = typical_radiosity(model->scene);
-    return fmax(model->emitted_power, LASTING * (model->area * rgb_sum(typical)));
+    return scene_light(model->scene);
 }
 
 static void prepare(struct model *model)

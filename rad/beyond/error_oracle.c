@@ -128,6 +128,21 @@ static double doubt_of_clusters(const struct link *link, const struct meeting *m
 
 /* --- sides --- */
 
+/* Of all light the part in the space of a node, 1. */
+static double light_part(const struct model *model, int32_t node)
+{
+    return model->spaces ? model->spaces->light[node_space(model, node)] : 1.0;
+}
+
+/* The largest error of a link that stays, W: epsilon times the light of the space of its
+ * ends. Hardly any light passes from one space to another, so there the brighter one
+ * counts. */
+static double threshold_of(const struct model *model, const struct link *link)
+{
+    return model->link_threshold *
+           real_max(light_part(model, link->p), light_part(model, link->q));
+}
+
 /* A patch that only reflects is split before a cluster if four times as wide: its parts
  * would have to be linked with each part of the cluster afterwards. (Office3 at epsilon
  * 1e-4: 30 % fewer links than by width alone and an eighth less error, Cornell box at
@@ -156,7 +171,8 @@ static int32_t choose(const struct model *model, const struct link *link, double
 {
     double error_p = error_of(model, link, link->p, link->q, link->parts_p);
     double error_q = error_of(model, link, link->q, link->p, link->parts_q);
-    if (error_p + error_q + doubt <= model->link_threshold)
+    double threshold = threshold_of(model, link);
+    if (error_p + error_q + doubt <= threshold)
         return NODE_NONE;
     error_p += p_larger ? doubt : 0.0;
     error_q += p_larger ? 0.0 : doubt;
@@ -166,7 +182,7 @@ static int32_t choose(const struct model *model, const struct link *link, double
         return first;
     if (node_is_cluster(second))
         return second;
-    bool helps = fmin(error_p, error_q) > 0.5 * model->link_threshold;
+    bool helps = fmin(error_p, error_q) > 0.5 * threshold;
     return helps && patch_may_split(model, second) ? second : NODE_NONE;
 }
 
@@ -174,8 +190,12 @@ static int32_t side_with_cluster(const struct model *model, const struct link *l
 {
     struct end p = end_of(model, link->p), q = end_of(model, link->q);
     struct meeting m = ends_meet(&p, &q);
+    bool several_p = node_space(model, link->p) < 0;
+    bool several_q = node_space(model, link->q) < 0;
+    if (several_p || several_q) /* light would pass from space to space */
+        return several_p && (!several_q || p_is_wider(&m)) ? link->p : link->q;
     double doubt = doubt_of_clusters(link, &m) * m.light;
-    if (m.near && doubt <= model->link_threshold)
+    if (m.near && doubt <= threshold_of(model, link))
         return NODE_NONE;
     return choose(model, link, doubt, p_is_wider(&m));
 }
@@ -205,7 +225,7 @@ static void divide(struct model *model, const struct link *link, int32_t to, int
     if (node_is_cluster(to))
         return;
     double error = spread_of(model, link, to, parts) * light_reflected(model, from, to);
-    if (error > model->link_threshold && patch_may_split(model, to))
+    if (error > threshold_of(model, link) && patch_may_split(model, to))
         forest_split(model->forest, to);
 }
 

@@ -28,6 +28,14 @@ static inline int32_t node_child(const struct model *model, int32_t node, int k)
                                  : model->forest->patches[node].children + k;
 }
 
+/* The space of a patch or a cluster; -1: of several. */
+static inline int32_t node_space(const struct model *model, int32_t node)
+{
+    if (node_is_cluster(node))
+        return model->clusters->tree->clusters[~node].space;
+    return model->spaces ? model->spaces->of[model->forest->patches[node].id.root] : 0;
+}
+
 /* The area of child k, 0 where there is none. */
 double end_child_area(const struct model *model, const struct end *end, int k);
 

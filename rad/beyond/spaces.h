@@ -1,0 +1,49 @@
+/* Spaces: parts of a scene that no ray connects, as two closed rooms.
+ *
+ * A small error of a bright room is all the light of a dim one. So errors, noise and the
+ * light that makes a lamp a lamp are relative to the light of one space.
+ *
+ * A space with a lamp has a number. One without has the number of the brightest: its
+ * light, if there is any, comes from elsewhere. */
+#ifndef RAD_BEYOND_SPACES_H
+#define RAD_BEYOND_SPACES_H
+
+#include <stdint.h>
+
+#include "geom/scene.h"
+#include "octree/octree.h"
+
+struct spaces {
+    int32_t *part;  /* [roots + 1] the same for roots that rays connect, and for the
+                       outside, which comes last: 0 .. roots */
+    int32_t *of;    /* [roots] the number of a root's space */
+    double *light;  /* [count] of all light the part in a space, 1; space 0 has most */
+    double *area;   /* [count] of the surfaces in a space, those of spaces without a lamp
+                       and of a sky left out if there are several, square scene units */
+    int32_t count;  /* at least 1 */
+};
+
+/* Rays from each root, which tell its space. */
+enum { SPACE_RAYS = 4 };
+
+/* [SPACE_RAYS for each of the roots first .. end - 1] where its rays end: a root, the
+ * number of all roots for the outside, or -1 (on a back, or the root has no area). To be
+ * freed with alloc_free(). */
+int32_t *places_met(const struct scene *scene, const struct octree *octree,
+                    int32_t first, int32_t end);
+
+/* The spaces by the places met by all roots; NULL: all roots are in one. */
+struct spaces *spaces_create(const struct scene *scene, const int32_t *met);
+void spaces_destroy(struct spaces *spaces); /* NULL: none */
+
+/* How many times the light of a root's space there is in the brightest, 1 or more. */
+static inline double space_dimness(const struct spaces *spaces, uint32_t root)
+{
+    return spaces->light[0] / spaces->light[spaces->of[root]];
+}
+
+/* The light of the scene, W, areas in square scene units: as emitted (of a sky what
+ * enters) or, where light is reflected for long, a part of it spread evenly. */
+double scene_light(const struct scene *scene);
+
+#endif
