@@ -83,8 +83,8 @@ static void write_meshes(struct run *run, const struct shading *shading,
         .outside = answer->outside, .irradiance = irradiance->forest.radiosity,
         .irradiance_error = irradiance->error, .irradiance_at = irradiance_at,
         .lamps = {answer->straight,
-                  answer->straight ? answer->gather->aims->lamps->least : 0.0,
-                  answer->gather ? answer->gather->mean : 0.0}};
+                  answer->straight ? answer->gather->lit->lamp_least : 0.0,
+                  answer->gather ? answer->gather->lit->mean : 0.0}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         struct error error = {.code = EXIT_DONE};

@@ -160,9 +160,10 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
                                          solver->model.criterion.final_gather, NULL);
     if (solution->lamps.known) {
         senders_destroy(answer->gather->aims->lamps);
+        answer->gather->lit[0].lamp_least = solution->lamps.lamp_least;
+        answer->gather->lit[0].mean = solution->lamps.mean;
         answer->gather->aims->lamps =
-            senders_create(&solver->model, solution->lamps.lamp_least, false);
-        answer->gather->mean = solution->lamps.mean;
+            lamps_create(&solver->model, answer->gather->lit);
         final_gather_renew(answer->gather);
         answer->straight = alloc_array(count, sizeof *answer->straight);
     }

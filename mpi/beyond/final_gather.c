@@ -446,7 +446,7 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     for (int64_t i = 0; i < g->count && all > 0.0; i++)
         weights[i] = g->areas[i] / all +
                      1.0 / ((double)g->count *
-                            fmax(rgb_sum(b[i]), DARK * g->gather->mean));
+                            fmax(rgb_sum(b[i]), DARK * g->gather->lit->mean));
     return weights;
 }
 

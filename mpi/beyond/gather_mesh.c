@@ -324,7 +324,7 @@ static struct known guess_of(const struct looking *l, int32_t leaf)
 {
     const struct forest *forest = l->solver->model.forest;
     double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
-    double mean = rho * l->gather->mean / BANDS; /* of a band */
+    double mean = rho * l->gather->lit->mean / BANDS; /* of a band */
     double guess = square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
     return (struct known){guess, guess, 0.0f, 1.0f};
 }

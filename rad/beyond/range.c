@@ -17,7 +17,7 @@ static double number_of(struct rgb b, int band)
     return band < BANDS ? b.band[band] : (double)(float)rgb_sum(b);
 }
 
-void forest_raise_ranges(const struct forest *forest, int band, double scale,
+void forest_raise_ranges(const struct forest *forest, int band, const double *scale,
                          float *ranges)
 {
     struct extremes *extremes = alloc_array((size_t)forest->count, sizeof *extremes);
@@ -31,7 +31,8 @@ void forest_raise_ranges(const struct forest *forest, int band, double scale,
             own.high = real_max(own.high, child[k].high);
         }
         extremes[p] = own;
-        ranges[p] = fmaxf(ranges[p], (float)(scale * (own.high - own.low)));
+        double factor = scale ? scale[patch->id.root] : 1.0;
+        ranges[p] = fmaxf(ranges[p], (float)(factor * (own.high - own.low)));
     }
     alloc_free(extremes);
 }
@@ -41,7 +42,7 @@ void forest_bound(struct forest *forest)
     alloc_free(forest->ranges);
     forest->ranged = forest->count;
     forest->ranges = alloc_array((size_t)forest->count, sizeof *forest->ranges);
-    forest_raise_ranges(forest, BANDS, 1.0, forest->ranges);
+    forest_raise_ranges(forest, BANDS, NULL, forest->ranges);
 }
 
 double forest_range_within(const struct forest *forest, int32_t patch)

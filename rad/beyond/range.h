@@ -4,9 +4,10 @@
 
 #include "rad/patch.h"
 
-/* Raises the range of each patch, [forest->count], to `scale` times the range in a band,
- * or of the sum over bands if `band` is BANDS. */
-void forest_raise_ranges(const struct forest *forest, int band, double scale,
+/* Raises the range of each patch, [forest->count], to the range in a band, or of the sum
+ * over bands if `band` is BANDS. `scale`: [roots] factor of the ranges of each; NULL:
+ * 1. */
+void forest_raise_ranges(const struct forest *forest, int band, const double *scale,
                          float *ranges);
 
 /* Finds the ranges, summed over bands, of all patches there are. */

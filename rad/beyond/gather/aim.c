@@ -3,7 +3,9 @@
  * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h): half by
  * the light of nodes with nothing in the way, half by the part of this light seen from
  * the region. So a lamp behind a wall, however bright, leaves some segments for lamps in
- * the room, and a segment to a node not seen from the region counts at most twice. A
+ * the room, and a segment to a node not seen from the region counts at most twice. (Light
+ * of another space, as long as no segment has seen any, has next to none of the first
+ * half, and adds nothing to what a leaf is unsure of.) A
  * sender of which the exact factor is F, and n segments of which have the kernels K
  * between their ends and meet a blocker or not (V), brings
  *
@@ -221,27 +223,36 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     struct gather_aims *aims = r->gather->aims;
     const struct senders *senders = cuts->senders;
     struct bounds own = facet_bounds(&r->facet);
+    int32_t space = node_space(senders->model, r->row->leaf);
     double all = 0.0, sum = 0.0, found = 0.0;
     RESERVE(aims->offers, &aims->offer_capacity, cut.count);
     for (int64_t i = 0; i < cut.count; i++) {
         const struct sender_node *node =
             &senders->nodes[cuts->nodes[cut.first + i].node];
-        aims->offers[i] = (struct offer){sender_node_worth(senders, node, &own), -1.0};
+        double blind = cuts_blind_part(senders, node, space);
+        aims->offers[i] =
+            (struct offer){sender_node_worth(senders, node, &own) * blind, -1.0};
         all += aims->offers[i].worth;
     }
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *at = &cuts->nodes[cut.first + i];
         const struct sender_node *node = &senders->nodes[at->node];
+        double blind = cuts_blind_part(senders, node, space);
         if (aims->offers[i].worth * segments >= FOR_EXACT * all &&
-            is_near_sender(node, &own))
+            is_near_sender(node, &own)) {
             aims->offers[i] = exact_offer(r, senders, node);
+            aims->offers[i].worth *= blind;
+        }
         sum += aims->offers[i].worth;
-        found += aims->offers[i].worth * at->found;
+        found += aims->offers[i].worth / blind * at->found;
     }
     double part = found > 0.0 ? 0.5 * sum / found : 0.0;
-    for (int64_t i = 0; i < cut.count; i++)
+    for (int64_t i = 0; i < cut.count; i++) {
+        const struct cut_node *at = &cuts->nodes[cut.first + i];
+        double blind = cuts_blind_part(senders, &senders->nodes[at->node], space);
         aims->offers[i].worth *=
-            (found > 0.0 ? 0.5 : 1.0) + part * cuts->nodes[cut.first + i].found;
+            (found > 0.0 ? 0.5 : 1.0) + part * at->found / blind;
+    }
     return sum / segments;
 }
 
@@ -269,13 +280,16 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         faint += offers[i].worth < each ? offers[i].worth : 0.0;
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct aim aim = {.senders = cuts->senders};
+    int32_t space = node_space(cuts->senders->model, r->row->leaf);
     struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *node = &cuts->nodes[cut.first + i];
         double worth = offers[i].worth;
         bool sure = worth >= each;
+        const struct sender_node *at = &cuts->senders->nodes[node->node];
+        bool unseen = at->space != space && !(node->found > 0.0);
         r->by_chance |=
-            worth > 0.0 && (!sure || is_by_chance(cuts->senders, node));
+            worth > 0.0 && !unseen && (!sure || is_by_chance(cuts->senders, node));
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;
@@ -288,8 +302,13 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         double direct =
             volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
         bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
-        const struct sender_node *at = &cuts->senders->nodes[node->node];
         double share = node->seen;
+        if (!none && at->space != space)
+            r->gather->counts.crossed++;
+        if (none && unseen) {
+            *volley = before; /* of another space, as ever: no doubt about own light */
+            continue;
+        }
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
         for (int c = 0; c < BANDS && none && !r->looks; c++) {
             double h = direct * light.band[c] / rgb_sum(light);
@@ -310,7 +329,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 void receiver_aim_at_bright(struct receiver *r)
 {
     const struct gather_aims *aims = r->gather->aims;
-    aim_at_cut(r, aims->bright_cuts, (int)ceil(r->rays * aims->bright_part));
+    double part = aims->bright_part[node_space(r->gather->model, r->row->leaf)];
+    aim_at_cut(r, aims->bright_cuts, (int)ceil(r->rays * part));
 }
 
 void receiver_aim(struct receiver *r)

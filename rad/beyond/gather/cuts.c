@@ -21,6 +21,9 @@
  * the rays from a leaf for which there is one. */
 enum { REGION_LEAVES = 64, PILOTS = 16 };
 
+/* Of segments dealt blindly the part to all light of another space. */
+static const double ELSEWHERE = 1.0 / 64.0;
+
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
 
@@ -45,9 +48,9 @@ static void name_leaves(struct regions *regions, const struct model *model, int3
     const struct cluster *self =
         cluster ? &model->clusters->tree->clusters[~node] : NULL;
     bool leaf = !cluster && patch_is_leaf(&model->forest->patches[node]);
-    if (region < 0 && (leaf || (cluster ? before[self->end] - before[self->first]
-                                        : leaves_of(model->forest, node)) <=
-                                   REGION_LEAVES)) {
+    bool few = leaf || (cluster ? before[self->end] - before[self->first]
+                                : leaves_of(model->forest, node)) <= REGION_LEAVES;
+    if (region < 0 && few && node_space(model, node) >= 0) {
         RESERVE(regions->nodes, &regions->capacity, regions->count + 1);
         region = (int32_t)regions->count++;
         regions->nodes[region] = node;
@@ -107,25 +110,37 @@ void cuts_destroy(struct cuts *cuts)
     alloc_free(cuts);
 }
 
+double cuts_blind_part(const struct senders *senders, const struct sender_node *node,
+                       int32_t space)
+{
+    if (node->space == space || node->space < 0)
+        return 1.0;
+    const double *light = senders->model->spaces->light;
+    return ELSEWHERE * real_min(1.0, light[space] / light[node->space]);
+}
+
 /* Appends the nodes of a cut below a node. `most`: light of one of these, at most, W/m^2.
  * Returns the light of all. */
-static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t number,
-                        double most)
+static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t space,
+                        int32_t number, double most)
 {
     const struct sender_node *node = &cuts->senders->nodes[number];
-    double worth = sender_node_worth(cuts->senders, node, region), sum = 0.0;
+    double worth = sender_node_worth(cuts->senders, node, region) *
+                   cuts_blind_part(cuts->senders, node, space);
+    double sum = 0.0;
     if (!(worth > 0.0))
         return 0.0;
     struct vec3 apart = vec3_sub(node->bounds.middle, region->middle);
     double reach = node->bounds.radius + region->radius;
     double far = real_max(vec3_length(apart) - reach, region->radius);
-    if (node->child[0] < 0 || (node->bounds.radius <= SMALL * far && worth <= most)) {
+    bool small = node->bounds.radius <= SMALL * far && node->space >= 0;
+    if (node->child[0] < 0 || (small && worth <= most)) {
         RESERVE(cuts->nodes, &cuts->capacity, cuts->count + 1);
         cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .upto = worth};
         return worth;
     }
     for (int k = 0; k < 4 && node->child[k] >= 0; k++)
-        sum += add_nodes(cuts, region, node->child[k], most);
+        sum += add_nodes(cuts, region, space, node->child[k], most);
     return sum;
 }
 
@@ -188,13 +203,15 @@ static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
 
 static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *counts)
 {
-    struct bounds bounds = bounds_of(cuts->senders->model, cuts->regions->nodes[region]);
+    const struct model *model = cuts->senders->model;
+    struct bounds bounds = bounds_of(model, cuts->regions->nodes[region]);
+    int32_t space = node_space(model, cuts->regions->nodes[region]);
     struct cut *cut = &cuts->cuts[region];
     double most = HUGE_VAL;
     cut->first = cuts->count;
     for (int pass = 0; pass < 2 && cuts->senders->count > 0; pass++) {
         cuts->count = cut->first;
-        most = add_nodes(cuts, &bounds, 0, most) / cuts->segments;
+        most = add_nodes(cuts, &bounds, space, 0, most) / cuts->segments;
     }
     cut->count = cuts->count - cut->first;
     double upto = 0.0, seen = 0.5, asked = 1.0;
@@ -207,6 +224,9 @@ static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *co
         struct cut_node *node = &cuts->nodes[i];
         node->found = node->asked > 0 ? node->seen / node->asked : 0.0;
         node->seen = (node->seen + seen / asked) / (node->asked + 1);
+        if (node->found > 0.0)
+            node->upto /= cuts_blind_part(
+                cuts->senders, &cuts->senders->nodes[node->node], space);
         upto += node->upto * sqrt(node->seen);
         node->upto = upto;
     }

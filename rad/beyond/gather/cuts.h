@@ -45,6 +45,12 @@ struct cuts {
     int64_t count, capacity;
 };
 
+/* The part of a node's light by which a region of this space deals segments to the node
+ * as long as none has seen it, 1: where no ray of any root has passed, hardly any will,
+ * and a lamp in another room is as good as a thousand times as bright. */
+double cuts_blind_part(const struct senders *senders, const struct sender_node *node,
+                       int32_t space);
+
 struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
                          int segments);
 void cuts_destroy(struct cuts *cuts); /* NULL: none */

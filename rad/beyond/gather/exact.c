@@ -201,7 +201,8 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
     const struct final_gather *g = r->gather;
     double near2 = fmin(1.0, nearness(&r->facet.triangle, sender));
     double varies = VARIES * sqrt(g->model->criterion.epsilon);
-    return factor * range * near2 * g->rays > varies * g->mean;
+    return factor * range * near2 * g->rays >
+           varies * g->lit[node_space(g->model, r->row->leaf)].mean;
 }
 
 /* A patch as a sender, or a part of a leaf. */

@@ -27,16 +27,6 @@
 #include "rad/beyond/gather/receiver.h"
 #include "rad/beyond/sequence.h"
 
-/* A lamp emits more than GLOW times the mean radiosity, if surfaces doing so are LAMP
- * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces
- * are as bright, as in a furnace, there is no lamp. Where little is reflected, BRIGHT
- * times the mean reflected light is enough; a bright patch reflects more than this. */
-static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
-
-/* Where no more than this part of the surface emits, all emitters are lamps: a dim one,
- * hardly found by rays, may be all the light of a room beside a bright one. */
-static const double FEW = 0.05;
-
 /* Largest ratio of the slope of B over a leaf to the slope over its parent: the square
  * root of the distance from an edge makes 1.41, and links are not right enough there to
  * tell more. */
@@ -51,28 +41,6 @@ enum { MANY = 25000, FEWEST = 4 };
 
 /* --- the whole --- */
 
-static double mean_radiosity(const struct model *model)
-{
-    double sum = 0.0;
-    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-        sum += scene_root_own_area(model->scene, root) *
-               rgb_sum(model->forest->radiosity[root]);
-    return sum / model->area;
-}
-
-/* The factor by which each band has the mean over all bands. */
-static struct rgb scale_of_bands(const struct model *model, double mean)
-{
-    struct rgb scale = {{0.0, 0.0, 0.0}};
-    for (int c = 0; c < BANDS && mean > 0.0; c++) {
-        for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-            scale.band[c] += scene_root_own_area(model->scene, root) *
-                             model->forest->radiosity[root].band[c];
-        scale.band[c] = mean / fmax(scale.band[c] / model->area, GATHER_DIM * mean);
-    }
-    return scale;
-}
-
 double forest_mean_reflected(const struct forest *forest)
 {
     double sum = 0.0;
@@ -81,37 +49,6 @@ double forest_mean_reflected(const struct forest *forest)
                (rgb_sum(forest->radiosity[root]) -
                 rgb_sum(forest_material(forest, root)->emission));
     return sum / scene_own_area(forest->scene);
-}
-
-/* The surfaces emitting more than `least`, over all bands: their area, in square scene
- * units, and the mean of their radiosity, W/m^2. */
-struct emitters {
-    double area, mean;
-};
-
-static struct emitters emitters_above(const struct model *model, double least)
-{
-    struct emitters all = {0.0, 0.0};
-    for (int32_t root = 0; root < scene_root_count(model->scene); root++) {
-        double area = scene_root_area(model->scene, root);
-        if (!(rgb_sum(scene_root_material(model->scene, root)->emission) > least))
-            continue;
-        all.area += area;
-        all.mean += area * rgb_sum(model->forest->radiosity[root]);
-    }
-    all.mean /= all.area > 0.0 ? all.area : 1.0;
-    return all;
-}
-
-/* A lamp emits more than this, over all bands, W/m^2. */
-static double least_of_lamps(const struct model *model)
-{
-    double mean = mean_radiosity(model);
-    if (emitters_above(model, 0.0).area <= FEW * model->area)
-        return 0.0;
-    bool glow = emitters_above(model, GLOW * mean).mean > LAMP * mean;
-    return fmin((glow ? GLOW : LAMP) * mean,
-                BRIGHT * forest_mean_reflected(model->forest));
 }
 
 /* Halves the rays for each fourfold of MANY leaves: a picture of the leaves is as smooth
@@ -130,39 +67,56 @@ static bool is_cut(const struct final_gather *gather, int32_t patch)
 
 /* How far apart radiosities are, over all bands; or `scaled`: the largest difference of a
  * band as a part of the band's mean, times the mean over all bands. */
-static double difference(const struct final_gather *g, struct rgb a, struct rgb b,
-                         bool scaled)
+static double difference(const struct final_gather *g, int32_t patch, struct rgb a,
+                         struct rgb b, bool scaled)
 {
+    const struct rgb *scale = &g->lit[node_space(g->model, patch)].scale;
     double most = 0.0;
     if (!scaled)
         return fabs(rgb_sum(a) - rgb_sum(b));
     for (int c = 0; c < BANDS; c++)
-        most = real_max(most, g->sums->scale.band[c] * fabs(a.band[c] - b.band[c]));
+        most = real_max(most, scale->band[c] * fabs(a.band[c] - b.band[c]));
     return most;
 }
 
 /* Leaves too near, of none yet. */
-static struct gather_nears *nears_create(const struct model *model, double mean)
+static struct gather_nears *nears_create(const struct model *model,
+                                         const struct lit *lit)
 {
+    double power = 0.0;
+    for (int32_t s = 0; s < lit_count(model); s++)
+        power += lit[s].area * lit[s].mean;
     size_t count = (size_t)model->forest->count;
     struct gather_nears *near = alloc_array(1, sizeof *near);
     near->unit_area = 0x1p-50 * model->area;
-    near->unit_watts = 0x1p-52 * model->area * mean;
+    near->unit_watts = 0x1p-52 * power;
     near->seen = alloc_array(count, sizeof *near->seen);
     near->items = alloc_array(count, sizeof *near->items);
     return near;
 }
 
-static struct gather_sums *sums_create(const struct model *model, double mean)
+static struct gather_sums *sums_create(const struct model *model, const struct lit *lit)
 {
     const struct forest *forest = model->forest;
     struct gather_sums *sums = alloc_array(1, sizeof *sums);
-    sums->scale = scale_of_bands(model, mean);
+    double *scale = alloc_array((size_t)forest->root_count, sizeof *scale);
     sums->latest = alloc_array((size_t)forest->count, sizeof *sums->latest);
     sums->ranges = alloc_array((size_t)forest->count, sizeof *sums->ranges);
-    for (int c = 0; c < BANDS; c++)
-        forest_raise_ranges(forest, c, sums->scale.band[c], sums->ranges);
+    for (int c = 0; c < BANDS; c++) {
+        for (int32_t root = 0; root < forest->root_count; root++)
+            scale[root] = lit[node_space(model, root)].scale.band[c];
+        forest_raise_ranges(forest, c, scale, sums->ranges);
+    }
+    alloc_free(scale);
     return sums;
+}
+
+struct senders *lamps_create(const struct model *model, const struct lit *lit)
+{
+    double *least = alloc_array((size_t)lit_count(model), sizeof *least);
+    for (int32_t s = 0; s < lit_count(model); s++)
+        least[s] = lit[s].lamp_least;
+    return senders_create(model, least, false);
 }
 
 struct final_gather *final_gather_create(struct model *model, int rays,
@@ -173,7 +127,7 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->model = model;
     gather->cut = cut;
     gather->rays = rays_for(rays, forest_count(forest).leaves);
-    gather->mean = mean_radiosity(model);
+    gather->lit = lit_find(model);
     gather->order = forest_order(forest);
     gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
     for (int64_t i = 0; i < forest->count; i++)
@@ -181,10 +135,11 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->view = alloc_array(1, sizeof *gather->view);
     gather->view->root = -1;
     gather->view->overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather->near = nears_create(model, gather->mean);
-    gather->sums = sums_create(model, gather->mean);
+    gather->near = nears_create(model, gather->lit);
+    gather->sums = sums_create(model, gather->lit);
     gather->aims = alloc_array(1, sizeof *gather->aims);
-    gather->aims->lamps = senders_create(model, least_of_lamps(model), false);
+    gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
+    gather->aims->lamps = lamps_create(model, gather->lit);
     final_gather_renew(gather);
     return gather;
 }
@@ -208,6 +163,7 @@ static void aims_destroy(struct gather_aims *aims)
     regions_destroy(aims->regions);
     cuts_destroy(aims->lamp_cuts);
     cuts_destroy(aims->bright_cuts);
+    alloc_free(aims->bright_part);
     alloc_free(aims->offers);
     alloc_free(aims->shots);
     alloc_free(aims);
@@ -232,6 +188,7 @@ void final_gather_destroy(struct final_gather *gather)
     alloc_free(gather->sums);
     alloc_free(gather->order);
     alloc_free(gather->place);
+    alloc_free(gather->lit);
     alloc_free(gather);
 }
 
@@ -307,7 +264,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
         slope.range = real_max(
-            slope.range, difference(gather, b[k], middle, gather->sums->exact));
+            slope.range, difference(gather, patch, b[k], middle, gather->sums->exact));
     if (slope.range > 0.0)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
@@ -318,13 +275,27 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
-static void find_bright(struct gather_aims *aims, const struct model *model)
+static void find_bright(struct gather_aims *aims, const struct model *model,
+                        struct lit *lit)
 {
-    double reflected = forest_mean_reflected(model->forest);
+    int32_t spaces = lit_count(model);
+    double *least = alloc_array((size_t)spaces, sizeof *least);
+    lit_renew(lit, model);
+    for (int32_t s = 0; s < spaces; s++)
+        least[s] = lit[s].bright_least;
     senders_destroy(aims->bright);
-    aims->bright = senders_create(model, BRIGHT * reflected, true);
-    aims->bright_part =
-        reflected > 0.0 ? senders_power(aims->bright) / (reflected * model->area) : 0.0;
+    aims->bright = senders_create(model, least, true);
+    for (int32_t s = 0; s < spaces; s++)
+        aims->bright_part[s] = 0.0;
+    for (int64_t i = 0; i < aims->bright->sender_count; i++) {
+        int32_t patch = aims->bright->patches[i];
+        aims->bright_part[node_space(model, patch)] +=
+            forest_area(model->forest, patch) *
+            rgb_sum(sender_light(aims->bright, patch));
+    }
+    for (int32_t s = 0; s < spaces; s++)
+        if (lit[s].reflected > 0.0)
+            aims->bright_part[s] /= lit[s].reflected * lit[s].area;
 }
 
 void final_gather_renew(struct final_gather *gather)
@@ -332,7 +303,7 @@ void final_gather_renew(struct final_gather *gather)
     const struct model *model = gather->model;
     const struct forest *forest = model->forest;
     struct gather_aims *aims = gather->aims;
-    find_bright(aims, model);
+    find_bright(aims, model, gather->lit);
     regions_destroy(aims->regions);
     cuts_destroy(aims->lamp_cuts);
     cuts_destroy(aims->bright_cuts);

@@ -35,6 +35,9 @@ struct gather_look {
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
 double forest_mean_reflected(const struct forest *forest);
 
+/* The lamps of a scene, by how bright its spaces are. */
+struct senders *lamps_create(const struct model *model, const struct lit *lit);
+
 /* Borrows the model, which has clusters and a solution, and `cut`: see struct
  * final_gather. `rays`: at least 1. */
 struct final_gather *final_gather_create(struct model *model, int rays,

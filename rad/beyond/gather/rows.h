@@ -6,10 +6,7 @@
 #define RAD_BEYOND_GATHER_ROWS_H
 
 #include "rad/beyond/gather/cuts.h"
-
-/* Bands with less than this part of all light are no more right than one with this part:
- * their light is known no better than to the tolerance of all. */
-#define GATHER_DIM 1e-3
+#include "rad/beyond/gather/lit.h"
 
 /* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
  * differ from rank to rank, so a patch is named by its place in forest_order(), here as
@@ -33,9 +30,6 @@ struct gather_sums {
     int64_t first;   /* of the sums open to additions */
     bool exact;      /* the row is made of exact factors */
     bool sharp;      /* factors of near triangles are in closed form */
-    struct rgb scale; /* factors giving all bands the same mean, the one over bands and
-                         all surface; a band with less than GATHER_DIM of this mean has
-                         the factor of a band with so much, 1 */
     float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
                         in the band of the largest range, scaled, W/m^2 */
     int32_t *latest; /* [forest->count] by place: where the latest sum of the place is,
@@ -111,6 +105,7 @@ struct gather_counts {
     int64_t escaped;        /* rays out of the scene or to backs, from leaves with any
                                front in view, and exact rows not summing to 1 */
     int64_t exact;          /* rows made without rays */
+    int64_t crossed;        /* terms, and segments seen, from one space to another */
 };
 
 /* A root and the roots that it faces. */
@@ -141,7 +136,8 @@ struct offer {
 struct gather_aims {
     struct senders *lamps;
     struct senders *bright;    /* patches reflecting enough to be aimed at */
-    double bright_part;        /* their part of all reflected light, 1 */
+    double *bright_part;       /* [lit_count()] their part of the light reflected in each
+                                  space, 1 */
     struct regions *regions;
     struct cuts *lamp_cuts, *bright_cuts;
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
@@ -153,7 +149,7 @@ struct gather_aims {
 struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
     int rays;            /* from a leaf, in the mean */
-    double mean;         /* radiosity, over bands and all surface, W/m^2 */
+    struct lit *lit;     /* [lit_count()] */
     const uint8_t *cut;  /* borrowed, [forest->count] 1: a thing stands on the patch or
                             across it; NULL: on none */
     int32_t *order;      /* [forest->count] patches as in forest_order() */

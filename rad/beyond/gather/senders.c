@@ -75,7 +75,7 @@ static void find_senders(struct building *b, int32_t patch, int32_t part)
     const struct patch *self = &forest->patches[patch];
     double sent = rgb_sum(sender_light(senders, patch)), below = 0.0;
     bool whole = !senders->reflect;
-    if (part < 0 && sent > senders->least &&
+    if (part < 0 && sent > senders->least[node_space(senders->model, patch)] &&
         (whole || mean_square(senders, patch) <= EVEN * sent * sent))
         part = patch;
     for (int k = 0; k < 4 && !whole && !patch_is_leaf(self); k++) {
@@ -102,6 +102,7 @@ static int32_t add_node(struct building *b, int32_t node)
     int32_t number = (int32_t)senders->count++;
     struct sender_node own = {.bounds = bounds_of(senders->model, node),
                               .child = {-1, -1, -1, -1},
+                              .space = node_space(senders->model, node),
                               .first = (int32_t)senders->sender_count};
     RESERVE(senders->nodes, &senders->capacity, senders->count);
     bool single = !node_is_cluster(node) && senders->part_of[node] == node;
@@ -114,15 +115,18 @@ static int32_t add_node(struct building *b, int32_t node)
     }
     for (int k = 0, count = 0; k < 4 && !single; k++) {
         int32_t child = node_child(senders->model, node, k);
-        if (child != NODE_NONE && power_of(b, child) > 0.0)
-            own.child[count++] = add_node(b, child);
+        if (child == NODE_NONE || !(power_of(b, child) > 0.0))
+            continue;
+        own.child[count] = add_node(b, child);
+        int32_t space = senders->nodes[own.child[count]].space;
+        own.space = count++ == 0 || own.space == space ? space : -1;
     }
     own.end = (int32_t)senders->sender_count;
     senders->nodes[number] = own;
     return number;
 }
 
-struct senders *senders_create(const struct model *model, double least, bool reflect)
+struct senders *senders_create(const struct model *model, double *least, bool reflect)
 {
     const struct cluster_tree *tree = model->clusters->tree;
     size_t patches = (size_t)model->forest->count;
@@ -153,6 +157,7 @@ void senders_destroy(struct senders *senders)
 {
     if (!senders)
         return;
+    alloc_free(senders->least);
     alloc_free(senders->nodes);
     alloc_free(senders->patches);
     alloc_free(senders->before);

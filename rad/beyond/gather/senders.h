@@ -25,12 +25,14 @@ struct sender_node {
     struct bounds bounds;
     int32_t child[4];   /* numbers of nodes; -1 where there are fewer */
     int32_t first, end; /* its senders */
+    int32_t space;      /* of these; -1: of several */
 };
 
 struct senders {
     const struct model *model; /* borrowed */
     bool reflect;              /* the light sent is reflected; false: emitted */
-    double least;              /* a sender sends more than this, over all bands, W/m^2 */
+    double *least;             /* [lit_count()] a sender of a space sends more than this,
+                                  over all bands, W/m^2 */
     struct sender_node *nodes; /* [count] parents first; node 0 is the top */
     int32_t *patches;          /* [sender_count] the senders, in the tree's order */
     double *before;            /* [sender_count + 1] power of those before, over all
@@ -40,10 +42,10 @@ struct senders {
     int64_t count, capacity, sender_count, sender_capacity, before_capacity;
 };
 
-/* The patches sending more than `least`, over all bands: lamps, which are roots, or, if
- * `reflect`, the largest patches doing so evenly. Borrows the model, which has clusters
- * and a solution. */
-struct senders *senders_create(const struct model *model, double least, bool reflect);
+/* The patches sending more than `least`, by space, over all bands: lamps, which are
+ * roots, or, if `reflect`, the largest patches doing so evenly. Borrows the model, which
+ * has clusters and a solution; owns `least`. */
+struct senders *senders_create(const struct model *model, double *least, bool reflect);
 void senders_destroy(struct senders *senders);
 
 /* The power of all senders, over all bands, W in square scene units. */
