@@ -78,6 +78,16 @@ struct known {
     float work;        /* tests of each ray */
 };
 
+/* Sums over the leaves of a space, these by area. */
+struct space_sums {
+    double square;     /* of (rho H)^2, W/m^2 squared */
+    double unseen;     /* the part of leaves not looked at */
+    double threshold;  /* of splitting; below 0: not known yet */
+    double by_ray, by_segment; /* variances */
+    double fixed, work; /* of leaves looked at, each counting 1 */
+    int64_t seen;       /* leaves looked at */
+};
+
 struct looking {
     struct solver *solver;
     struct final_gather *gather;
@@ -85,7 +95,7 @@ struct looking {
     uint8_t *open;   /* [roots] 1: leaves of the root have exact rows */
     struct known *known; /* [forest->count] of leaves */
     int64_t known_capacity;
-    double unseen;   /* sum of area * (rho H)^2 of leaves not looked at */
+    struct space_sums *sums; /* [lit_count()] */
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
     const int32_t *leaves;     /* [count] looked at */
@@ -234,19 +244,28 @@ static bool may_split(struct looking *l, int32_t leaf)
     return room;
 }
 
+static struct space_sums *sums_of(const struct looking *l, int32_t leaf)
+{
+    return &l->sums[node_space(&l->solver->model, leaf)];
+}
+
 /* Looks at `leaves` and splits those over which light varies; the children of these take
  * the place of all. Returns their number. */
-static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
-                            double *threshold)
+static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count)
 {
     struct solver *solver = l->solver;
     struct forest *forest = solver->model.forest;
     struct gather_look *looks = look(l, *leaves, count);
-    double sum = l->unseen;
+    int32_t spaces = lit_count(&solver->model);
+    for (int32_t s = 0; s < spaces; s++)
+        l->sums[s].square = l->sums[s].unseen;
     for (int64_t i = 0; i < count; i++)
-        sum += forest_area(forest, (*leaves)[i]) * square_of(&looks[i]);
-    if (*threshold < 0.0)
-        *threshold = MESH * solver->model.criterion.epsilon * sum;
+        sums_of(l, (*leaves)[i])->square +=
+            forest_area(forest, (*leaves)[i]) * square_of(&looks[i]);
+    for (int32_t s = 0; s < spaces; s++)
+        if (l->sums[s].threshold < 0.0)
+            l->sums[s].threshold =
+                MESH * solver->model.criterion.epsilon * l->sums[s].square;
     int32_t *next = alloc_array(4 * (size_t)count, sizeof *next);
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
@@ -256,7 +275,8 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
             spread =
                 fmax(variance_of(&looks[i]), SPREAD_CUT * square_of_light(forest, leaf));
         keep_known(l, leaf, &looks[i]);
-        if (forest_area(forest, leaf) * spread <= *threshold || !may_split(l, leaf))
+        if (forest_area(forest, leaf) * spread <= sums_of(l, leaf)->threshold ||
+            !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {
@@ -290,18 +310,24 @@ static void split_bent(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     struct forest *forest = l->solver->model.forest;
-    struct rgb sum = {{0.0, 0.0, 0.0}};
+    const struct model *model = &l->solver->model;
+    struct rgb *sums = alloc_array((size_t)lit_count(model), sizeof *sums);
     for (int64_t i = 0; i < mesh->count; i++)
-        rgb_add(&sum, forest_area(forest, mesh->leaves[i]),
+        rgb_add(&sums[node_space(model, mesh->leaves[i])],
+                forest_area(forest, mesh->leaves[i]),
                 squares_of_light(forest, mesh->leaves[i]));
-    double dim = GATHER_DIM * GATHER_DIM * rgb_sum(sum);
-    for (int c = 0; c < BANDS; c++)
-        sum.band[c] = fmax(sum.band[c], dim);
+    for (int32_t s = 0; s < lit_count(model); s++) {
+        double dim = GATHER_DIM * GATHER_DIM * rgb_sum(sums[s]);
+        for (int c = 0; c < BANDS; c++)
+            sums[s].band[c] = fmax(sums[s].band[c], dim);
+    }
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
         if (l->open[forest->patches[leaf].id.root])
-            split_bent_leaf(l, leaf, gather_splits_of(&l->solver->model, leaf, &sum));
+            split_bent_leaf(
+                l, leaf, gather_splits_of(model, leaf, &sums[node_space(model, leaf)]));
     }
+    alloc_free(sums);
     list_leaves(mesh, forest);
 }
 
@@ -324,7 +350,8 @@ static struct known guess_of(const struct looking *l, int32_t leaf)
 {
     const struct forest *forest = l->solver->model.forest;
     double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
-    double mean = rho * l->gather->lit->mean / BANDS; /* of a band */
+    const struct lit *lit = &l->gather->lit[node_space(&l->solver->model, leaf)];
+    double mean = rho * lit->mean / BANDS; /* of a band */
     double guess = square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
     return (struct known){guess, guess, 0.0f, 1.0f};
 }
@@ -343,63 +370,67 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
 {
     const struct gather_mesh *mesh = l->mesh;
     const struct model *model = &l->solver->model;
-    double sum = 0.0;
     for (int64_t i = 0; i < mesh->count; i++)
-        sum += forest_area(model->forest, mesh->leaves[i]) *
-               square_of_light(model->forest, mesh->leaves[i]);
+        sums_of(l, mesh->leaves[i])->square +=
+            forest_area(model->forest, mesh->leaves[i]) *
+            square_of_light(model->forest, mesh->leaves[i]);
     int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
     *count = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
         double area = forest_area(model->forest, mesh->leaves[i]);
         double light = area * square_of_light(model->forest, mesh->leaves[i]);
-        double most = SPREAD_MOST * (light + UNSURE * area * (sum / model->area));
+        int32_t space = node_space(model, mesh->leaves[i]);
+        double sum = l->sums[space].square, mean = sum / l->gather->lit[space].area;
+        double most = SPREAD_MOST * (light + UNSURE * area * mean);
         if (known->by_ray > 0.0 && most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
             continue;
         }
         if (known->by_ray != IS_EXACT)
             known->by_ray = IS_UNSEEN;
-        l->unseen += light;
+        l->sums[space].unseen += light;
     }
     return leaves;
 }
 
 /* Gives leaves not looked at the mean noise, relative to their light, and the mean work
- * of the others, or a guess if there are none. The noise of the others, too, is made more
- * like the mean. */
+ * of the others in their space, or a guess if there are none. The noise of the others,
+ * too, is made more like the mean. */
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
-    double by_ray = 0.0, by_segment = 0.0, square = 0.0, fixed = 0.0, work = 0.0;
     double unsure = UNSURE_RAYS / (UNSURE_RAYS + 4.0 * l->rays);
-    int64_t seen = 0;
+    for (int32_t s = 0; s < lit_count(&l->solver->model); s++)
+        l->sums[s] = (struct space_sums){.square = 0.0};
     for (int64_t i = 0; i < mesh->count; i++) {
         const struct known *known = &l->known[mesh->leaves[i]];
+        struct space_sums *sums = sums_of(l, mesh->leaves[i]);
         double area = forest_area(forest, mesh->leaves[i]);
         if (known->by_ray < 0.0)
             continue;
-        by_ray += area * known->by_ray;
-        by_segment += area * known->by_segment;
-        square += area * square_of_light(forest, mesh->leaves[i]);
-        fixed += (double)known->fixed;
-        work += (double)known->work;
-        seen++;
+        sums->by_ray += area * known->by_ray;
+        sums->by_segment += area * known->by_segment;
+        sums->square += area * square_of_light(forest, mesh->leaves[i]);
+        sums->fixed += (double)known->fixed;
+        sums->work += (double)known->work;
+        sums->seen++;
     }
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
+        const struct space_sums *sums = sums_of(l, mesh->leaves[i]);
         double all = square_of_light(forest, mesh->leaves[i]);
-        double part = square > 0.0 ? all / square : 0.0;
-        if (known->by_ray == IS_UNSEEN && seen == 0)
+        double part = sums->square > 0.0 ? all / sums->square : 0.0;
+        if (known->by_ray == IS_UNSEEN && sums->seen == 0)
             *known = guess_of(l, mesh->leaves[i]);
         else if (known->by_ray == IS_UNSEEN)
-            *known = (struct known){part * by_ray, part * by_segment,
-                                    (float)(fixed / (double)seen),
-                                    (float)(work / (double)seen)};
+            *known = (struct known){part * sums->by_ray, part * sums->by_segment,
+                                    (float)(sums->fixed / (double)sums->seen),
+                                    (float)(sums->work / (double)sums->seen)};
         else if (known->by_ray >= 0.0) {
-            known->by_ray += unsure * (part * by_ray - known->by_ray);
-            known->by_segment += unsure * (part * by_segment - known->by_segment);
+            known->by_ray += unsure * (part * sums->by_ray - known->by_ray);
+            known->by_segment += unsure * (part * sums->by_segment - known->by_segment);
         }
     }
 }
@@ -408,12 +439,13 @@ static void guess_unseen(struct looking *l)
 static void refine(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
-    double threshold = -1.0; /* not known yet */
     int64_t count;
+    for (int32_t s = 0; s < lit_count(&l->solver->model); s++)
+        l->sums[s].threshold = -1.0;
     int32_t *leaves = choose_leaves(l, &count);
     for (int round = 0; round < ROUNDS && count > 0; round++) {
         progress_begin(l->solver->progress, "looking", round, 0);
-        count = split_leaves(l, &leaves, count, &threshold);
+        count = split_leaves(l, &leaves, count);
         mesh->split += count / 4;
     }
     alloc_free(leaves);
@@ -451,6 +483,35 @@ static int rays_of_black(const struct looking *l, int32_t leaf, double reflectan
     return rays > FEWEST ? rays : FEWEST;
 }
 
+/* Shares shots among the leaves of each space apart, as gather_share_shots() does:
+ * `worth` and `shots`, [2 * mesh->count], of rays and segments. */
+static void share_by_space(const struct looking *l, const double *worth, int *shots)
+{
+    const struct gather_mesh *mesh = l->mesh;
+    const struct model *model = &l->solver->model;
+    int32_t spaces = lit_count(model);
+    int64_t *at = alloc_array((size_t)spaces + 1, sizeof *at);
+    double *sorted = alloc_array(2 * (size_t)mesh->count, sizeof *sorted);
+    int *dealt = alloc_array(2 * (size_t)mesh->count, sizeof *dealt);
+    for (int64_t k = 0; k < 2 * mesh->count; k++)
+        at[node_space(model, mesh->leaves[k / 2]) + 1]++;
+    for (int32_t s = 0; s < spaces; s++)
+        at[s + 1] += at[s];
+    for (int64_t k = 0; k < 2 * mesh->count; k++)
+        sorted[at[node_space(model, mesh->leaves[k / 2])]++] = worth[k];
+    for (int32_t s = spaces; s > 0; s--) /* back to where each begins */
+        at[s] = at[s - 1];
+    at[0] = 0;
+    for (int32_t s = 0; s < spaces; s++)
+        gather_share_shots(sorted + at[s], at[s + 1] - at[s], l->gather->rays,
+                           dealt + at[s]);
+    for (int64_t k = 0; k < 2 * mesh->count; k++)
+        shots[k] = dealt[at[node_space(model, mesh->leaves[k / 2])]++];
+    alloc_free(dealt);
+    alloc_free(sorted);
+    alloc_free(at);
+}
+
 /* Shares rays and segments in proportion to the square root of area times variance. Exact
  * rows, which make no use of theirs, have the mean number. */
 static void share_rays(struct looking *l)
@@ -475,7 +536,7 @@ static void share_rays(struct looking *l)
                        ? -1.0
                        : sqrt(forest_area(forest, leaf) * variance);
     }
-    gather_share_shots(worth, 2 * mesh->count, l->gather->rays, shots);
+    share_by_space(l, worth, shots);
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
     mesh->segments = alloc_array((size_t)mesh->count, sizeof *mesh->segments);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
@@ -497,6 +558,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     struct looking l = {.solver = solver, .mesh = mesh, .links = links};
     l.gather = final_gather_create(model, model->criterion.final_gather, NULL);
     l.rays = l.gather->rays / ROWS_PER_LOOK;
+    l.sums = alloc_array((size_t)lit_count(model), sizeof *l.sums);
     list_leaves(mesh, model->forest);
     l.open = gather_find_open_roots(solver, l.gather);
     if (l.rays >= FEWEST_LOOKED)
@@ -513,6 +575,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     final_gather_destroy(l.gather);
     alloc_free(l.known);
     alloc_free(l.open);
+    alloc_free(l.sums);
     return stopped == 0;
 }
 
