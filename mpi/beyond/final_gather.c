@@ -42,9 +42,9 @@
  *
  *     a^T W' = (k a)^T,
  *
- * whatever light there is. So the balance of the answer is true. One factor for the
- * irradiances of the answer would make the balance true as well, but would correct by the
- * hundredfold, light straight from lamps included.
+ * whatever light there is, in each space. So the balance of the answer is true. One
+ * factor for the irradiances of the answer would make the balance true as well, but would
+ * correct by the hundredfold, light straight from lamps included.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
@@ -69,7 +69,7 @@ enum { TURNS_MOST = 40 };
  * residual by as much. */
 static const double LEFT = 0.03;
 
-/* A scene is closed if no more than this part of all rays escapes, or light that is no
+/* A space is closed if no more than this part of its rays escapes, or light that is no
  * more than this part of what is absorbed. */
 static const double CRACKS = 1e-5;
 
@@ -97,6 +97,10 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
     g->spread = alloc_array((size_t)g->count, sizeof *g->spread);
+    size_t spaces = (size_t)lit_count(&solver->model);
+    g->closed = alloc_array(spaces, sizeof *g->closed);
+    g->fired = alloc_array(2 * spaces, sizeof *g->fired);
+    g->flows = alloc_array(spaces, sizeof *g->flows);
 }
 
 /* Hands the gather over to the solver. */
@@ -113,14 +117,46 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->radiosity);
     alloc_free(g->all);
     alloc_free(g->spread);
+    alloc_free(g->closed);
+    alloc_free(g->fired);
+    alloc_free(g->flows);
     stages_free(g->stages);
 }
 
 static void make_row(void *context, int64_t i)
 {
     struct gathering *g = context;
+    const struct gather_counts *counts = &g->gather->counts;
+    int64_t *fired = g->fired + 2 * gathering_space(g, i);
+    fired[0] += 1 - counts->rays;
+    fired[1] -= counts->escaped;
     final_gather_add_row(g->gather, g->leaves[i], g->mesh->rays[i], g->mesh->segments[i],
                          g->mesh->exact[i]);
+    fired[0] += counts->rays;
+    fired[1] += counts->escaped;
+}
+
+/* Collective. A space seen from another has no balance of its own: then all have one
+ * together or none has any. */
+static void find_closed(struct gathering *g)
+{
+    int32_t spaces = lit_count(&g->solver->model);
+    int64_t rays = 0, escaped = 0, crossed = g->gather->counts.crossed;
+    comm_add(g->solver->comm, g->fired, 2 * spaces);
+    comm_add(g->solver->comm, &crossed, 1);
+    for (int32_t s = 0; s < spaces; s++) {
+        rays += g->fired[2 * s];
+        escaped += g->fired[2 * s + 1];
+    }
+    g->apart = crossed == 0;
+    for (int32_t s = 0; s < spaces; s++) {
+        if (g->apart) {
+            rays = g->fired[2 * s];
+            escaped = g->fired[2 * s + 1];
+        }
+        g->closed[s] = (double)escaped <= CRACKS * (double)rays;
+        g->balanced = g->balanced || g->closed[s];
+    }
 }
 
 /* Collective. False if a signal on any rank has ended the work. */
@@ -133,16 +169,15 @@ static bool make_rows(struct gathering *g)
                                 .context = g, .work = g->mesh->work, .count = g->count};
     stages_run(g->stages);
     const struct gather_counts *counts = &g->gather->counts;
-    int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
-                      counts->exact, final_gather_terms(g->gather),
-                      g->mesh->traced};
+    int64_t sums[] = {stop_is_asked(), counts->rays, counts->segments, counts->exact,
+                      final_gather_terms(g->gather), g->mesh->traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
-    g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
+    find_closed(g);
     solver->beyond->answer->counts = (struct gathered){
-        .rays = sums[2], .segments = sums[3], .exact = sums[4],
-        .terms = sums[5], .looks = sums[6], .split = g->mesh->split,
+        .rays = sums[1], .segments = sums[2], .exact = sums[3],
+        .terms = sums[4], .looks = sums[5], .split = g->mesh->split,
         .limited = g->mesh->limited};
-    return sums[1] == 0;
+    return sums[0] == 0;
 }
 
 /* --- the equation --- */
@@ -246,30 +281,44 @@ static double shining_area(const struct gathering *g, int64_t i)
     return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 
-/* Spreads missing light, so that as much arrives as leaves, over irradiances `h` for the
- * radiosities `b`. `lamps`: as of irradiances(). */
+/* The flows of the balance of which a leaf is part. */
+static struct flows *flows_of(const struct gathering *g, int64_t i)
+{
+    return &g->flows[gathering_balance(g, i)];
+}
+
+/* Spreads missing light, so that as much arrives as leaves in a closed space, over
+ * irradiances `h` for the radiosities `b`. `lamps`: as of irradiances(). */
 static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
                           struct rgb *h)
 {
-    struct rgb leaving = {{0.0, 0.0, 0.0}}, arriving = leaving, all = leaving;
+    int32_t spaces = lit_count(&g->solver->model);
+    for (int32_t s = 0; s < spaces; s++)
+        g->flows[s] = (struct flows){.leaving = {{0.0, 0.0, 0.0}}};
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
         double bare = g->covers[i].bare, kept = g->covers[i].kept * bare;
         double more = lamps ? shining_area(g, i) - kept : 0.0;
+        struct flows *own = flows_of(g, i);
         for (int c = 0; c < BANDS; c++) {
-            leaving.band[c] += kept * b[i].band[c] + more * m->emission.band[c];
-            arriving.band[c] += bare * h[i].band[c];
-            all.band[c] += bare * g->spread[i].band[c];
+            own->leaving.band[c] += kept * b[i].band[c] + more * m->emission.band[c];
+            own->arriving.band[c] += bare * h[i].band[c];
+            own->spread.band[c] += bare * g->spread[i].band[c];
         }
     }
-    for (int c = 0; c < BANDS; c++) {
-        bool lit = all.band[c] > 0.0; /* where no light arrives, none is missing */
-        double missing = lit ? leaving.band[c] - arriving.band[c] : 0.0;
-        double part = lit ? missing / all.band[c] : 0.0;
-        for (int64_t i = 0; i < g->count; i++)
-            h[i].band[c] += part * g->spread[i].band[c];
-        g->missing.band[c] = leaving.band[c] > 0.0 ? missing / leaving.band[c] : 0.0;
-    }
+    for (int32_t s = 0; s < spaces; s++)
+        for (int c = 0; c < BANDS; c++) {
+            struct flows *own = &g->flows[s];
+            /* where no light arrives, none is missing */
+            bool lit = own->spread.band[c] > 0.0 && g->closed[s];
+            double leaving = own->leaving.band[c];
+            double missing = lit ? leaving - own->arriving.band[c] : 0.0;
+            own->spread.band[c] = lit ? missing / own->spread.band[c] : 0.0;
+            own->missing.band[c] = leaving > 0.0 ? missing / leaving : 0.0;
+        }
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            h[i].band[c] += flows_of(g, i)->spread.band[c] * g->spread[i].band[c];
 }
 
 /* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`; with the
@@ -292,7 +341,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
         own[row] = final_gather_irradiance(g->gather, row, g->radiosity, lamps);
     *seconds += comm_seconds();
     gathering_share_rows(g, h);
-    if (g->closed)
+    if (g->balanced)
         close_balance(g, b, lamps, h);
 }
 
@@ -347,21 +396,29 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* Scales the irradiances of a closed scene so that all kept light is absorbed. Their
+/* Scales the irradiances of a closed space so that all kept light is absorbed. Their
  * balance lacks values below 0, now 0, and the residual of the equation. */
 static void absorb_all(const struct gathering *g, struct rgb *h)
 {
-    for (int c = 0; c < BANDS; c++) {
-        double emitted = 0.0, gone = 0.0;
-        for (int64_t i = 0; i < g->count; i++) {
-            const struct material *m = gathering_material(g, i);
-            emitted += shining_area(g, i) * m->emission.band[c];
+    int32_t spaces = lit_count(&g->solver->model);
+    for (int32_t s = 0; s < spaces; s++)
+        g->flows[s].leaving = g->flows[s].arriving = (struct rgb){{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < g->count; i++) {
+        const struct material *m = gathering_material(g, i);
+        for (int c = 0; c < BANDS; c++) {
             double on = g->covers[i].kept * m->reflectance.band[c];
-            gone += g->covers[i].bare * (1.0 - on) * h[i].band[c];
+            flows_of(g, i)->leaving.band[c] += shining_area(g, i) * m->emission.band[c];
+            flows_of(g, i)->arriving.band[c] +=
+                g->covers[i].bare * (1.0 - on) * h[i].band[c];
         }
-        for (int64_t i = 0; i < g->count && gone > 0.0; i++)
-            h[i].band[c] *= emitted / gone;
     }
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            const struct flows *own = flows_of(g, i);
+            double gone = own->arriving.band[c];
+            if (gone > 0.0 && g->closed[own - g->flows])
+                h[i].band[c] *= own->leaving.band[c] / gone;
+        }
 }
 
 /* Updates the vote for the gathered light. */
@@ -384,36 +441,45 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     }
     vote->absorbed = absorbed;
     vote->escaped = leaving - arriving;
-    vote->remaining = 2.0 * residual / g->solver->model.absorptance;
+    vote->remaining = 2.0 * residual * lit_count(&g->solver->model) /
+                      g->solver->model.absorptance; /* at most, in each space */
     vote->converged =
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
-/* Collective. What light in an open scene may be off by in the end, in parts of B: rows
- * lose or make light at each reflection, besides what their leaves lose by their own
- * rays. Of that as much is left as of the light straight from lamps, of irradiances `h`
- * for radiosities `b`: little in a dark room, a hundredfold in a white one. `reflected`
- * and `arriving`: buffers. */
-static double light_unsure(struct gathering *g, const struct rgb *h, const struct rgb *b,
-                           struct rgb *reflected, struct rgb *arriving)
+/* Collective. What light in an open space may be off by in the end: rows lose or make
+ * light at each reflection, besides what their leaves lose by their own rays. Of that as
+ * much is left as of the light straight from lamps, of irradiances `h` for radiosities
+ * `b`: little in a dark room, a hundredfold in a white one. `reflected` and `arriving`:
+ * buffers. */
+static void find_unsure(struct gathering *g, const struct rgb *h, const struct rgb *b,
+                        struct rgb *reflected, struct rgb *arriving)
 {
-    double unsure = 0.0, straight = 0.0;
-    if (g->closed)
-        return 0.0; /* the balance sees to it */
+    int32_t spaces = lit_count(&g->solver->model);
+    struct rgb *missing = alloc_array((size_t)spaces, sizeof *missing);
+    double *straight = alloc_array((size_t)spaces, sizeof *straight);
     for (int64_t i = 0; i < g->count; i++)
         reflected[i] = rgb_sub(b[i], gathering_material(g, i)->emission);
     irradiances(g, reflected, false, arriving);
-    for (int c = 0; c < BANDS; c++) {
-        double missing = 0.0;
-        for (int64_t i = 0; i < g->count; i++) {
-            const struct cover *cover = &g->covers[i];
-            missing += cover->bare * ((double)cover->kept * reflected[i].band[c] -
-                                      arriving[i].band[c]);
-            straight += cover->bare * (h[i].band[c] - arriving[i].band[c]);
+    for (int64_t i = 0; i < g->count; i++) {
+        const struct cover *cover = &g->covers[i];
+        int32_t s = gathering_balance(g, i);
+        for (int c = 0; c < BANDS; c++) {
+            missing[s].band[c] +=
+                cover->bare *
+                ((double)cover->kept * reflected[i].band[c] - arriving[i].band[c]);
+            straight[s] += cover->bare * (h[i].band[c] - arriving[i].band[c]);
         }
-        unsure += fabs(missing);
     }
-    return straight > 0.0 ? fmin(1.0, unsure / straight) : 0.0;
+    for (int32_t s = 0; s < spaces; s++) {
+        double all = 0.0;
+        for (int c = 0; c < BANDS; c++)
+            all += fabs(missing[s].band[c]);
+        if (!g->closed[s] && straight[s] > 0.0) /* the balance sees to closed ones */
+            g->flows[s].unsure = fmin(1.0, all / straight[s]);
+    }
+    alloc_free(straight);
+    alloc_free(missing);
 }
 
 /* Collective. The answer for pictures: light straight from lamps, and open shares. */
@@ -436,47 +502,64 @@ static void share_answer(struct gathering *g)
     alloc_free(light);
 }
 
-/* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
- * leaf. */
+/* Weights of leaves with the radiosities `b`: in each space all of `b` has the size 1 by
+ * area, and 1 by leaf. */
 static double *weigh(const struct gathering *g, const struct rgb *b)
 {
-    double *weights = alloc_array((size_t)g->count, sizeof *weights), all = 0.0;
-    for (int64_t i = 0; i < g->count; i++)
-        all += g->areas[i] * rgb_sum(b[i]);
-    for (int64_t i = 0; i < g->count && all > 0.0; i++)
-        weights[i] = g->areas[i] / all +
-                     1.0 / ((double)g->count *
-                            fmax(rgb_sum(b[i]), DARK * g->gather->lit->mean));
+    size_t spaces = (size_t)lit_count(&g->solver->model);
+    double *weights = alloc_array((size_t)g->count, sizeof *weights);
+    double *all = alloc_array(spaces, sizeof *all);
+    int64_t *count = alloc_array(spaces, sizeof *count);
+    for (int64_t i = 0; i < g->count; i++) {
+        all[gathering_space(g, i)] += g->areas[i] * rgb_sum(b[i]);
+        count[gathering_space(g, i)]++;
+    }
+    for (int64_t i = 0; i < g->count; i++) {
+        int32_t s = gathering_space(g, i);
+        double least = DARK * g->gather->lit[s].mean;
+        if (all[s] > 0.0)
+            weights[i] = g->areas[i] / all[s] +
+                         1.0 / ((double)count[s] * fmax(rgb_sum(b[i]), least));
+    }
+    alloc_free(all);
+    alloc_free(count);
     return weights;
 }
 
-/* In a closed scene a leaf keeps all of its light; or none, if it faces out. */
+/* In a closed space a leaf keeps all of its light; or none, if it faces out. */
 static void keep_light(struct gathering *g)
 {
-    for (int64_t i = 0; i < g->count && g->closed; i++)
-        g->covers[i].kept = g->covers[i].kept > 0.0f ? 1.0f : 0.0f;
+    for (int64_t i = 0; i < g->count; i++)
+        if (g->closed[gathering_balance(g, i)])
+            g->covers[i].kept = g->covers[i].kept > 0.0f ? 1.0f : 0.0f;
 }
 
-/* Finds whether a scene is closed though rays escape: in a thing that touches walls and
- * has no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
- * across have rays of both sides, and tell nothing. Lost light is held against what is
- * absorbed: in a white room it is missing at every reflection. */
-static bool find_closed(struct gathering *g, const struct rgb *b)
+/* Finds spaces that are closed though rays escape: in a thing that touches walls and has
+ * no faces there, rays are lost on backs, but no light gets in. Leaves with a thing across
+ * have rays of both sides, and tell nothing. Lost light is held against what is absorbed:
+ * in a white room it is missing at every reflection. Returns whether there are more. */
+static bool find_more_closed(struct gathering *g, const struct rgb *b)
 {
-    const struct forest *forest = g->solver->model.forest;
-    double lost = 0.0, absorbed = 0.0;
+    int32_t spaces = lit_count(&g->solver->model);
+    double *lost = alloc_array((size_t)spaces, sizeof *lost);
+    double *absorbed = alloc_array((size_t)spaces, sizeof *absorbed);
+    bool more = false;
     for (int64_t i = 0; i < g->count; i++) {
-        int32_t leaf = g->leaves[i];
-        struct rgb rho = forest_material(forest, leaf)->reflectance;
+        int32_t s = gathering_balance(g, i);
+        struct rgb rho = gathering_material(g, i)->reflectance;
         double kept = g->covers[i].kept, bare = g->covers[i].bare;
         for (int c = 0; c < BANDS; c++)
-            absorbed += bare * (1.0 - rho.band[c]) * b[i].band[c];
-        if (kept > 0.0 && !g->mesh->cut[leaf])
-            lost += (1.0 - kept) * bare * rgb_sum(b[i]);
+            absorbed[s] += bare * (1.0 - rho.band[c]) * b[i].band[c];
+        if (kept > 0.0 && !g->mesh->cut[g->leaves[i]])
+            lost[s] += (1.0 - kept) * bare * rgb_sum(b[i]);
     }
-    g->closed = lost <= CRACKS * absorbed;
+    for (int32_t s = 0; s < spaces; s++)
+        if (!g->closed[s] && absorbed[s] > 0.0 && lost[s] <= CRACKS * absorbed[s])
+            more = g->balanced = g->closed[s] = true;
     keep_light(g);
-    return g->closed;
+    alloc_free(absorbed);
+    alloc_free(lost);
+    return more;
 }
 
 /* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
@@ -500,7 +583,7 @@ static struct bicgstab take_turn(struct gathering *g, const double *weights,
     for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
         for (int c = 0; c < BANDS; c++)
             h[i].band[c] = fmax(0.0, h[i].band[c]);
-    if (g->closed)
+    if (g->balanced)
         absorb_all(g, h);
     set_radiosities(g, h, answer);
     return done;
@@ -521,7 +604,8 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (int64_t i = 0; i < g->count; i++)
         answer[i] = b[i] = forest->radiosity[g->leaves[i]];
     struct bicgstab_end end = {
-        .residual = 0.5 * model->criterion.tolerance * model->absorptance,
+        .residual = 0.5 * model->criterion.tolerance * model->absorptance /
+                    lit_count(model), /* of the sum over spaces */
         .part = LEFT, .steps = STEPS_MOST};
     double *weights = weigh(g, b);
     struct bicgstab done = {.steps = 1};
@@ -531,17 +615,18 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         if (turn == TURNS_MOST)
             end.steps = 0;
         done = take_turn(g, weights, end, b, h, r, answer);
-        if (!g->closed && find_closed(g, answer) && turn < TURNS_MOST)
+        if (find_more_closed(g, answer) && turn < TURNS_MOST)
             done.steps = 1; /* with the balance */
     }
     alloc_free(weights);
-    for (int c = 0; c < BANDS; c++)
-        told->closing = fmax(told->closing, fabs(g->missing.band[c]));
+    for (int32_t s = 0; s < lit_count(model); s++)
+        for (int c = 0; c < BANDS; c++)
+            told->closing = fmax(told->closing, fabs(g->flows[s].missing.band[c]));
     judge(g, h, answer, done.residual, vote);
-    double unsure = vote->remaining + light_unsure(g, h, answer, b, r);
+    find_unsure(g, h, answer, b, r);
     place_radiosities(g, answer);
     final_gather_pull(g->gather, g->radiosity);
-    gathering_estimate_errors(g, unsure);
+    gathering_estimate_errors(g, vote->remaining);
     share_answer(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];

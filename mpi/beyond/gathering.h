@@ -23,6 +23,14 @@ struct too_near {
     struct rgb shown; /* B as seen from afar over its mean, 1 */
 };
 
+/* Light of the surfaces of a space, W in square scene units; factors of a balance. */
+struct flows {
+    struct rgb leaving, arriving; /* W; or emitted and absorbed */
+    struct rgb spread;            /* as irradiance is spread, W */
+    struct rgb missing;           /* part of the light last leaving that did not arrive */
+    double unsure;                /* part of B that light may be off by in the end */
+};
+
 /* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
  * rank are in the order of its leaves. */
 struct gathering {
@@ -35,9 +43,13 @@ struct gathering {
     int64_t count;
     struct too_near *near;  /* [near_count], once numbered */
     int64_t near_count;
-    bool closed;            /* hardly any ray of any rank, or no light, escapes */
+    bool apart;             /* no row sees another space than its leaf's */
+    bool balanced;          /* some space is closed */
+    bool *closed;           /* [lit_count()] hardly any ray of a space escapes, or no
+                             * light */
+    int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
+    struct flows *flows;    /* [lit_count()] */
     struct rgb *spread;     /* [count] how missing light is spread, W/m^2 a ray */
-    struct rgb missing;     /* part of the light last leaving that did not arrive, 1 */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
     int64_t bytes;          /* of values exchanged by ranks so far */
@@ -49,6 +61,18 @@ static inline const struct material *gathering_material(const struct gathering *
                                                         int64_t leaf)
 {
     return forest_material(g->solver->model.forest, g->leaves[leaf]);
+}
+
+/* The space of a leaf, by its number. */
+static inline int32_t gathering_space(const struct gathering *g, int64_t leaf)
+{
+    return node_space(&g->solver->model, g->leaves[leaf]);
+}
+
+/* The balance of which a leaf is part, an index of `flows` and `closed`. */
+static inline int32_t gathering_balance(const struct gathering *g, int64_t leaf)
+{
+    return g->apart ? gathering_space(g, leaf) : 0;
 }
 
 /* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number:
@@ -78,5 +102,8 @@ static inline void gathering_share_field(struct gathering *g, size_t offset, siz
  * the solver's answer. `remaining`: what the solution may lack, in parts of B.
  * Pre: g->radiosity is the solution. */
 void gathering_estimate_errors(struct gathering *g, double remaining);
+
+/* The deviation of which `error`, of a leaf, is the bound. */
+double gathering_deviation(double error);
 
 #endif

@@ -11,6 +11,8 @@ static void keep_terms(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     int64_t first = final_gather_terms(g);
+    int32_t space = node_space(g->model, r->row->leaf);
+    bool several = lit_count(g->model) > 1;
     r->row->end = first + g->sums->count;
     RESERVE(g->terms, &g->term_capacity, r->row->end);
     for (int64_t i = 0; i < g->sums->count; i++) {
@@ -19,6 +21,8 @@ static void keep_terms(struct receiver *r)
         for (int c = 0; c < BANDS; c++)
             term.weight[c] = (float)sum->weight[c];
         g->terms[first + i] = term;
+        g->counts.crossed +=
+            several && node_space(g->model, g->order[term.place]) != space;
     }
 }
 
