@@ -102,8 +102,9 @@ struct gathered {
     double closing; /* largest part, of a band, of the light leaving surfaces of a closed
                        scene, lost or made; 0: an open scene */
     double error;   /* of the leaves, relative RMS of reflected radiosity */
-    double median, worst_tenth; /* by area, of errors of leaves relative to their own
-                                     light, 1 at most */
+    double median, worst_tenth; /* errors relative to a leaf's own light that half and a
+                                   tenth of the leaves exceed, 1 at most */
+    double median_by_rays, median_by_mesh; /* the same of each part alone */
     double by_rays; /* part of the error from the choice of rays */
     double by_mesh; /* part from B varying within leaves; the squares of both parts sum to
                        the error's, less the doubt in a measurement */

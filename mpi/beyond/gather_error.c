@@ -8,7 +8,6 @@
 #include "mpi/beyond/gathering.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "geom/alloc.h"
 #include "mpi/beyond/beyond.h"
@@ -24,8 +23,8 @@ static const double BOUND = 2.5;
 /* Factors of lamps, by few points of a leaf, deviate by about this part. */
 static const double FACTORS = 4e-4;
 
-/* Classes of leaves by their light: the last has 2^(BRIGHTEST - 1) times the mean and
- * more. Fewest leaves, counted in each band, to estimate a ratio over. */
+/* Classes of the leaves of a space by their light: the last has 2^(BRIGHTEST - 1) times
+ * the mean and more. Fewest leaves, counted in each band, to estimate a ratio over. */
 enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
 
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
@@ -71,6 +70,42 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
         }
     }
     gathering_share_rows(g, variance);
+}
+
+/* Collective. How much the variance by rays changes as the light of the links gives way
+ * to the solution, by leaf, 1: links may have brought much light through a window, or
+ * none. As if each ray brought the light of a term: all rays weigh the same. Pre:
+ * g->radiosity is the solution, the forest has the light of the links. */
+static void find_changes(struct gathering *g, struct rgb *change)
+{
+    const struct final_gather *gather = g->gather;
+    const struct rgb *linked = g->solver->model.forest->radiosity;
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
+    for (int64_t row = 0, k = 0; row < gather->count; row++) {
+        struct rgb sums[2] = {{{0.0, 0.0, 0.0}}}, squares[2] = {{{0.0, 0.0, 0.0}}};
+        struct rgb all = {{0.0, 0.0, 0.0}};
+        for (; k < gather->rows[row].end; k++) {
+            int32_t place = gather->terms[k].place;
+            const struct rgb *b[] = {&linked[gather->order[place]], &g->radiosity[place]};
+            for (int c = 0; c < BANDS; c++) {
+                double w = (double)gather->terms[k].weight[c];
+                all.band[c] += w;
+                for (int i = 0; i < 2; i++) {
+                    sums[i].band[c] += w * b[i]->band[c];
+                    squares[i].band[c] += w * b[i]->band[c] * b[i]->band[c];
+                }
+            }
+        }
+        for (int c = 0; c < BANDS; c++) {
+            double variance[2] = {0.0, 0.0};
+            for (int i = 0; i < 2 && all.band[c] > 0.0; i++)
+                variance[i] = squares[i].band[c] -
+                              sums[i].band[c] * sums[i].band[c] / all.band[c];
+            bool any = variance[0] > 0.0 && variance[1] > 0.0;
+            own[row].band[c] = any ? variance[1] / variance[0] : 1.0;
+        }
+    }
+    gathering_share_rows(g, change);
 }
 
 /* A leaf whose rays have missed a small bright thing found by one of its sisters is too
@@ -126,29 +161,36 @@ static double irradiance_of(const struct gathering *g, int64_t leaf, int band)
     return rho > 0.0 ? fmax(0.0, (b - m->emission.band[band]) / rho) : 0.0;
 }
 
-/* Adds each leaf, a band at a time, to a class, whose number `own`, [BANDS * count],
- * tells. Leaves count by their area and the square of their reflectance. */
+/* Adds each leaf, a band at a time, to a class of its space, of [CLASSES * lit_count()]
+ * all classes, whose number `own`, [BANDS * count], tells. Leaves count by their area and
+ * the square of their reflectance. */
 static void classify(const struct gathering *g, const struct rgb *halves,
-                     const struct rgb *chance, struct noise *classes, uint8_t *own)
+                     const struct rgb *chance, struct noise *classes, int32_t *own)
 {
     double *light = alloc_array(BANDS * (size_t)g->count, sizeof *light);
     double *weight = alloc_array(BANDS * (size_t)g->count, sizeof *weight);
-    double sum = 0.0, all = 0.0;
+    size_t spaces = (size_t)lit_count(&g->solver->model);
+    double *sum = alloc_array(spaces, sizeof *sum);
+    double *all = alloc_array(spaces, sizeof *all);
     for (int64_t k = 0; k < BANDS * g->count; k++) {
         int64_t i = k / BANDS;
+        int32_t s = gathering_space(g, i);
         double rho = gathering_material(g, i)->reflectance.band[k % BANDS];
         light[k] = irradiance_of(g, i, (int)(k % BANDS));
         weight[k] = g->areas[i] * rho * rho;
-        sum += weight[k] * light[k];
-        all += weight[k];
+        sum[s] += weight[k] * light[k];
+        all[s] += weight[k];
     }
     for (int64_t k = 0; k < BANDS * g->count; k++) {
-        own[k] = (uint8_t)class_of(light[k], sum / all);
+        int32_t s = gathering_space(g, k / BANDS);
+        own[k] = CLASSES * s + class_of(light[k], sum[s] / all[s]);
         struct noise *class = &classes[own[k]];
         class->by_halves += weight[k] * halves[k / BANDS].band[k % BANDS];
         class->by_chance += weight[k] * chance[k / BANDS].band[k % BANDS];
         class->count += weight[k] > 0.0;
     }
+    alloc_free(all);
+    alloc_free(sum);
     alloc_free(weight);
     alloc_free(light);
 }
@@ -186,14 +228,19 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     gathering_share_field(g, offsetof(struct gather_row, chance), bytes, variance);
     gathering_share_field(g, offsetof(struct gather_row, halves), bytes, halves);
     gathering_share_field(g, offsetof(struct gather_row, of_segments), bytes, lamps);
-    struct noise classes[CLASSES] = {{0}};
-    double ratios[CLASSES];
-    uint8_t *own_class = alloc_array(BANDS * (size_t)g->count, sizeof *own_class);
+    int32_t all = CLASSES * lit_count(&g->solver->model);
+    struct noise *classes = alloc_array((size_t)all, sizeof *classes);
+    double *ratios = alloc_array((size_t)all, sizeof *ratios);
+    int32_t *own_class = alloc_array(BANDS * (size_t)g->count, sizeof *own_class);
     classify(g, halves, variance, classes, own_class);
-    for (int k = 0; k < CLASSES; k++)
-        ratios[k] = ratio_of_sequence(classes, k);
-    for (int64_t i = 0; i < g->count; i++)
+    for (int32_t k = 0; k < all; k++)
+        ratios[k] = ratio_of_sequence(classes + k / CLASSES * CLASSES, k % CLASSES);
+    find_changes(g, halves);
+    for (int64_t i = 0; i < g->count; i++) {
         variance[i] = rgb_sub(variance[i], lamps[i]);
+        for (int c = 0; c < BANDS; c++)
+            variance[i].band[c] *= halves[i].band[c];
+    }
     raise_to_sisters(g, g->mesh->rays, variance);
     raise_to_sisters(g, g->mesh->segments, lamps);
     for (int64_t i = 0; i < g->count; i++)
@@ -201,36 +248,71 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     for (int64_t k = 0; k < BANDS * g->count; k++)
         variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
     alloc_free(own_class);
+    alloc_free(ratios);
+    alloc_free(classes);
     alloc_free(lamps);
     alloc_free(halves);
 }
 
-/* A leaf's error relative to its own light. */
-struct own_error {
-    double relative, area;
+/* Sums over the reflecting leaves of a space, but the first by area, (W/m^2)^2. */
+struct space_error {
+    int64_t leaves;
+    double by_rays, by_mesh, light;
+    double lacking; /* part of B that light may be off by in the end */
 };
 
-/* A compare function of qsort(); equal errors may change places. */
-static int compare_errors(const void *left, const void *right)
+/* Sums up the errors of spaces: each counts by its leaves, relative to its own light. */
+static void sum_errors(const struct space_error *spaces, int32_t count,
+                       struct gathered *told)
 {
-    const struct own_error *a = left, *b = right;
-    return (a->relative > b->relative) - (a->relative < b->relative);
+    int64_t leaves = 0;
+    double by_rays = 0.0, by_mesh = 0.0, all = 0.0;
+    for (int32_t s = 0; s < count; s++)
+        leaves += spaces[s].leaves;
+    for (int32_t s = 0; s < count; s++) {
+        if (!(spaces[s].light > 0.0))
+            continue;
+        double part = (double)spaces[s].leaves / (double)leaves;
+        by_rays += part * (spaces[s].by_rays / spaces[s].light);
+        by_mesh += part * (spaces[s].by_mesh / spaces[s].light);
+        all += part * ((spaces[s].by_rays + spaces[s].by_mesh) / spaces[s].light +
+                       spaces[s].lacking * spaces[s].lacking);
+    }
+    told->by_rays = sqrt(by_rays);
+    told->by_mesh = sqrt(by_mesh);
+    told->error = sqrt(all);
 }
 
-/* Finds percentiles, by area, of the errors of leaves relative to their own light. */
-static void rank_errors(struct own_error *errors, int64_t count, struct gathered *counts)
+/* The part of leaves whose light is off by more than `limit`, with these deviations, in
+ * the same unit: errors are normal (Abramowitz and Stegun, 26.2.18, to 2.5e-4). */
+static double part_beyond(const double *deviations, int64_t count, double limit)
 {
-    double area = 0.0, passed = 0.0;
-    for (int64_t k = 0; k < count; k++)
-        area += errors[k].area;
-    qsort(errors, (size_t)count, sizeof *errors, compare_errors);
+    double sum = 0.0;
     for (int64_t k = 0; k < count; k++) {
-        if (passed <= 0.5 * area)
-            counts->median = errors[k].relative;
-        if (passed <= 0.9 * area)
-            counts->worst_tenth = errors[k].relative;
-        passed += errors[k].area;
+        double x = limit / deviations[k];
+        double root = 0.115194 + x * (0.000344 + x * 0.019527);
+        root = 1.0 + x * (0.196854 + x * root);
+        sum += 1.0 / (root * root * root * root);
     }
+    return count > 0 ? sum / (double)count : 0.0;
+}
+
+/* The error, at most 1, that this part of the leaves exceeds. A leaf counts as one: by
+ * area a lawn would decide for the rooms of a house. */
+static double error_exceeded(const double *deviations, int64_t count, double part)
+{
+    enum { HALVINGS = 40 };
+    double low = 0.0, high = 1.0;
+    for (int k = 0; k < HALVINGS; k++) {
+        double middle = 0.5 * (low + high);
+        *(part_beyond(deviations, count, middle) > part ? &low : &high) = middle;
+    }
+    return high;
+}
+
+double gathering_deviation(double error)
+{
+    return error / BOUND;
 }
 
 void gathering_estimate_errors(struct gathering *g, double remaining)
@@ -239,9 +321,12 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     size_t count = (size_t)g->count;
     struct rgb *mesh = alloc_array(count, sizeof *mesh);
     struct rgb *rays = alloc_array(count, sizeof *rays);
-    struct own_error *errors = alloc_array(count, sizeof *errors);
+    double *own_errors = alloc_array(3 * count, sizeof *own_errors);
+    double *all = own_errors, *by_rays = all + count, *by_mesh = by_rays + count;
+    int32_t spaces = lit_count(&solver->model);
+    struct space_error *sums = alloc_array((size_t)spaces, sizeof *sums);
+    struct gathered *told = &solver->beyond->answer->counts;
     int64_t listed = 0;
-    double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
     alloc_free(solver->beyond->answer->error);
@@ -250,33 +335,40 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
         struct rgb b = g->radiosity[g->gather->place[g->leaves[i]]];
-        double largest = 0.0, square = 0.0, own = 0.0;
+        struct space_error *sum = &sums[gathering_space(g, i)];
+        double largest = 0.0, own = 0.0, square[2] = {0.0, 0.0};
+        double lacking = remaining + g->flows[gathering_balance(g, i)].unsure;
+        sum->lacking = lacking;
+        sum->leaves += rgb_sum(m->reflectance) > 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c], h = irradiance_of(g, i, c);
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             double reflected = b.band[c] - m->emission.band[c];
-            double lacks = remaining * b.band[c];
+            double lacks = lacking * b.band[c];
             largest = fmax(largest,
                            BOUND * sqrt(deviation * deviation + lacks * lacks));
-            by_rays += g->areas[i] * rho * rho * rays[i].band[c];
-            by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
-            light += g->areas[i] * reflected * reflected;
-            square += rho * rho * (rays[i].band[c] + mesh[i].band[c]);
+            square[0] += rho * rho * rays[i].band[c];
+            square[1] += rho * rho * mesh[i].band[c];
+            sum->light += g->areas[i] * reflected * reflected;
             own += rho * rho * h * h;
         }
+        sum->by_rays += g->areas[i] * square[0];
+        sum->by_mesh += g->areas[i] * square[1];
         error[g->leaves[i]] = (float)largest;
-        if (square + own > 0.0)
-            errors[listed++] = (struct own_error){
-                fmin(1.0, sqrt(square / own + remaining * remaining)), g->areas[i]};
+        bool shown = g->covers[i].outside > 0.0f; /* nothing hides all of it */
+        if (!shown || !(square[0] + square[1] + own > 0.0))
+            continue;
+        all[listed] = sqrt((square[0] + square[1]) / own + lacking * lacking);
+        by_rays[listed] = sqrt(square[0] / own);
+        by_mesh[listed++] = sqrt(square[1] / own);
     }
-    rank_errors(errors, listed, &solver->beyond->answer->counts);
-    if (light > 0.0) {
-        solver->beyond->answer->counts.by_rays = sqrt(by_rays / light);
-        solver->beyond->answer->counts.by_mesh = sqrt(by_mesh / light);
-        solver->beyond->answer->counts.error =
-            sqrt((by_rays + by_mesh) / light + remaining * remaining);
-    }
-    alloc_free(errors);
+    told->median = error_exceeded(all, listed, 0.5);
+    told->worst_tenth = error_exceeded(all, listed, 0.1);
+    told->median_by_rays = error_exceeded(by_rays, listed, 0.5);
+    told->median_by_mesh = error_exceeded(by_mesh, listed, 0.5);
+    sum_errors(sums, spaces, told);
+    alloc_free(sums);
+    alloc_free(own_errors);
     alloc_free(rays);
     alloc_free(mesh);
 }
