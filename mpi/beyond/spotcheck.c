@@ -12,7 +12,8 @@
  *
  *     E^2 = mean over draws of  A_i (B_i - r)(B_i - s) / q_i  /  sum of A B^2
  *
- * is the mean square error; its scatter from draw to draw tells the deviation of the
+ * is the mean square error (each space counts by its leaves, relative to its own light);
+ * its scatter from draw to draw tells the deviation of the
  * mean. A given number of draws has no bias. To end when draws scatter little has some
  * where few leaves have most of the error: in trials, E^2 is a quarter too small if one
  * draw in 200 has half of it. A third of q goes by area, one by area times the square of
@@ -69,7 +70,9 @@ struct checking {
     int32_t *leaves;  /* [count] reflecting ones, in forest_order() */
     double *upto;     /* [count] sum of the probabilities of these leaves */
     int64_t count;
-    double light;     /* area times the square of the reflected radiosity of all leaves */
+    double *weight;   /* [lit_count()] of the leaves of a space */
+    double light;     /* area times the square of the reflected radiosity of all leaves,
+                         each times its weight */
     int64_t rays_most;
     int paths;        /* for each half */
     int32_t drawn[BATCH];          /* numbers of the leaves of a batch */
@@ -96,12 +99,36 @@ static struct merit merit_of(const struct checking *c, int32_t leaf)
     double area = forest_area(c->solver->model.forest, leaf);
     double error = (double)c->solver->beyond->answer->error[leaf];
     struct rgb b = reflected(c->solver->model.forest, leaf);
-    return (struct merit){area, area * rgb_dot(b, b), area * error * error};
+    double weight = c->weight[node_space(&c->solver->model, leaf)];
+    return (struct merit){area, weight * (area * rgb_dot(b, b)),
+                          weight * (area * error * error)};
 }
 
 static double over(double part, double sum)
 {
     return sum > 0.0 ? part / sum : 0.0;
+}
+
+/* Weighs spaces so that the light of each is its part of all leaves. */
+static void weigh_spaces(struct checking *c)
+{
+    const struct model *model = &c->solver->model;
+    int32_t spaces = lit_count(model);
+    double *light = alloc_array((size_t)spaces, sizeof *light), most = 0.0;
+    int64_t *leaves = alloc_array((size_t)spaces, sizeof *leaves);
+    c->weight = alloc_array((size_t)spaces, sizeof *c->weight);
+    for (int64_t i = 0; i < c->count; i++) {
+        struct rgb b = reflected(model->forest, c->leaves[i]);
+        int32_t s = node_space(model, c->leaves[i]);
+        light[s] += forest_area(model->forest, c->leaves[i]) * rgb_dot(b, b);
+        leaves[s]++;
+        most = fmax(most, light[s]);
+    }
+    for (int32_t s = 0; s < spaces; s++)
+        if (light[s] > 0.0)
+            c->weight[s] = (double)leaves[s] / (double)c->count * (most / light[s]);
+    alloc_free(leaves);
+    alloc_free(light);
 }
 
 /* Lists the leaves to draw from, and their probabilities. */
@@ -116,8 +143,11 @@ static void list_leaves(struct checking *c)
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
         if (!(rgb_sum(forest_material(forest, leaf)->reflectance) > 0.0))
             continue;
-        struct merit merit = merit_of(c, leaf);
         c->leaves[c->count++] = leaf;
+    }
+    weigh_spaces(c);
+    for (int64_t i = 0; i < c->count; i++) {
+        struct merit merit = merit_of(c, c->leaves[i]);
         sum.area += merit.area;
         sum.light += merit.light;
         sum.error += merit.error;
@@ -130,6 +160,17 @@ static void list_leaves(struct checking *c)
     for (int64_t i = 0; i < c->count; i++)
         c->upto[i] /= upto;
     c->light = sum.light;
+}
+
+/* Lights of dim spaces are chosen as often as those of the brightest. */
+static double *favour_spaces(const struct model *model)
+{
+    int32_t roots = model->forest->root_count;
+    double *favour = alloc_array((size_t)roots, sizeof *favour);
+    for (int32_t root = 0; root < roots; root++)
+        favour[root] =
+            model->spaces ? space_dimness(model->spaces, (uint32_t)root) : 1.0;
+    return favour;
 }
 
 static void draw_leaves(struct checking *c, int batch)
@@ -181,7 +222,8 @@ static void check_batch(struct checking *c, int batch)
     for (int k = 0; k < BATCH; k++) {
         int32_t i = c->drawn[k], leaf = c->leaves[i];
         double likely = c->upto[i] - (i > 0 ? c->upto[i - 1] : 0.0);
-        double scale = forest_area(forest, leaf) / (likely * c->light);
+        double weight = c->weight[node_space(&c->solver->model, leaf)];
+        double scale = weight * forest_area(forest, leaf) / (likely * c->light);
         struct rgb b = reflected(forest, leaf), off[2], apart;
         for (int band = 0; band < BANDS; band++) {
             for (int half = 0; half < 2; half++)
@@ -239,7 +281,9 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     struct checking c = {
         .solver = solver, .pathtracer = &pathtracer, .result = {.done = true}};
     c.rays_most = RAYS_FREE + gathered->rays + gathered->segments;
+    double *favour = favour_spaces(&solver->model);
     pathtracer.guess = solver->model.forest;
+    pathtracer_favour(&pathtracer, favour);
     list_leaves(&c);
     progress_begin(solver->progress, "checking", -1, 0);
     if (c.light > 0.0) {
@@ -253,6 +297,8 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
                                        counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);
     alloc_free(c.upto);
+    alloc_free(c.weight);
+    alloc_free(favour);
     pathtracer_free(&pathtracer);
     solver->account.seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
     return c.result;

@@ -142,16 +142,29 @@ static void find_hidden(struct pathtracer *pathtracer)
     }
 }
 
+/* Emission of a root, over bands, times its favour, W/m^2. */
+static double favoured(const struct pathtracer *pathtracer, int32_t root)
+{
+    double emission = rgb_sum(scene_root_material(pathtracer->scene, root)->emission);
+    return pathtracer->favour ? pathtracer->favour[root] * emission : emission;
+}
+
+void pathtracer_favour(struct pathtracer *pathtracer, const double *favour)
+{
+    double sum = 0.0;
+    pathtracer->favour = favour;
+    for (int32_t r = 0; r < scene_root_count(pathtracer->scene); r++)
+        pathtracer->power[r] = sum +=
+            scene_root_area(pathtracer->scene, r) * favoured(pathtracer, r);
+}
+
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree)
 {
     struct pathtracer pathtracer = {.scene = scene, .octree = octree};
     pathtracer.counts = alloc_array(1, sizeof *pathtracer.counts);
     int32_t roots = scene_root_count(scene);
     pathtracer.power = alloc_array((size_t)roots, sizeof *pathtracer.power);
-    double sum = 0.0;
-    for (int32_t r = 0; r < roots; r++)
-        pathtracer.power[r] = sum +=
-            scene_root_area(scene, r) * rgb_sum(scene_root_material(scene, r)->emission);
+    pathtracer_favour(&pathtracer, NULL);
     find_hidden(&pathtracer);
     return pathtracer;
 }
@@ -212,7 +225,8 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct a
     struct triangle t = scene_root_triangle(scene, light.root);
     light.x = point_on(&t, draw);
     struct rgb emission = scene_root_material(scene, light.root)->emission;
-    double g = coupling(pathtracer, p, &light), density = rgb_sum(emission) / power;
+    double g = coupling(pathtracer, p, &light);
+    double density = favoured(pathtracer, light.root) / power;
     double both = density + (pathtracer->hidden[light.root] ? 0.0 : g);
     if (g > 0.0 && !is_blocked(pathtracer, p, &light))
         add_light(sum, throughput, g / both, emission);
@@ -225,7 +239,7 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct arri
     struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
     if (!(rgb_sum(emission) > 0.0) || pathtracer->hidden[q->root])
         return;
-    double density = rgb_sum(emission) / pathtracer_power(pathtracer);
+    double density = favoured(pathtracer, q->root) / pathtracer_power(pathtracer);
     double g = coupling(pathtracer, p, q);
     if (g > 0.0)
         add_light(sum, throughput, g / (density + g), emission);

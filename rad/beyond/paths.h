@@ -18,7 +18,9 @@
 struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, with some emission */
     const struct octree *octree;  /* borrowed, the scene's */
-    double *power;                /* [roots] of roots 0 .. r, W in square scene units */
+    double *power;                /* [roots] of roots 0 .. r, W in square scene units,
+                                     each times its favour */
+    const double *favour;         /* [roots] borrowed; NULL: 1 */
     bool *hidden;                 /* [roots] lamps that no ray meets: below another
                                      face */
     const struct forest *guess;   /* reflected radiosity, to take noise from paths, or
@@ -28,6 +30,10 @@ struct pathtracer {
 
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree);
 void pathtracer_free(struct pathtracer *pathtracer);
+
+/* Has paths choose lights by power times `favour`, [roots], above 0: expectations are the
+ * same. Light paths are not to be followed then. */
+void pathtracer_favour(struct pathtracer *pathtracer, const double *favour);
 
 /* Estimate of the mean reflected radiosity rho H, W/m^2, over a part of a root: the
  * triangle whose corners have the given barycentric coordinates. Three equal corners ask
