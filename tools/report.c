@@ -56,10 +56,11 @@ void report_round(struct run *run)
     const struct gathered *gathered = &beyond_answer(run->solver)->counts;
     if (gathered->checked > 0)
         run_say(run,
-                "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
+                "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), %.2g %% in the "
+                "median, by %lld paths",
                 (long long)run->solver->beyond->accuracy.rounds, 100.0 * gathered->error,
                 100.0 * gathered->by_rays, 100.0 * gathered->by_mesh,
-                (long long)gathered->paths);
+                100.0 * gathered->median, (long long)gathered->paths);
 }
 
 /* Each iteration reduces the bound on the remaining error by about the same factor. */
@@ -154,11 +155,15 @@ bool report_summary(struct run *run)
         if (run->stats.hold == HOLD_NOTHING)
             run_say(run, "warning: --accuracy has nothing to measure: "
                          "no light is reflected");
-        else if (run->stats.hold != HOLD_NONE)
+        else if (run->stats.hold != HOLD_NONE) {
+            double median = run->stats.gathered.median;
+            bool own = median > run->stats.error_estimate;
             run_say(run,
-                    "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
-                    100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
-                    HOLDS[run->stats.hold]);
+                    "warning: the error is %.2g %%%s, not the %.3g %% of --accuracy: %s",
+                    100.0 * (own ? median : run->stats.error_estimate),
+                    own ? " in the median of leaves" : "",
+                    100.0 * run->stats.accuracy, HOLDS[run->stats.hold]);
+        }
         run->stats.touching_power =
             fmin(balance_touching(run), fmax(0.0, run->stats.escaped_power));
         run->stats.escaped_power -= run->stats.touching_power;

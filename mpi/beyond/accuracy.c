@@ -6,7 +6,10 @@
  *
  *     claim^2 = E^2 + deviation,        E^2 = rays^2 + mesh^2.
  *
- * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 exceeds the
+ * and the same is asked of the error relative to a leaf's own light, in the median of all
+ * leaves: a lawn in the sun does not make the rooms of a house right.
+ *
+ * The gather estimates the two parts (mpi/beyond/gather_error.c). Where E^2 exceeds the
  * sum of their squares by more than chance, the mesh has the surplus. If the claim is
  * above the goal, the next round brings E to AIM of it, which leaves room for the
  * deviation, with both parts alike unless one is small already: noise falls like N^-0.6
@@ -66,8 +69,27 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
     double larger = estimate > 0.0 ? fmax(1.0, counts->error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
         beyond->answer->error[p] *= (float)larger;
-    counts->median = fmin(1.0, larger * counts->median);
-    counts->worst_tenth = fmin(1.0, larger * counts->worst_tenth);
+    double factor = fmax(1.0, sqrt(check->own));
+    counts->median = fmin(1.0, factor * counts->median);
+    counts->worst_tenth = fmin(1.0, factor * counts->worst_tenth);
+    counts->median_by_rays = fmin(1.0, factor * counts->median_by_rays);
+    counts->median_by_mesh = fmin(1.0, factor * counts->median_by_mesh);
+}
+
+/* The error to be brought down: of all light, or of a leaf's own in the median. */
+static double error_of(const struct gathered *counts)
+{
+    return fmax(counts->error, counts->median);
+}
+
+static double part_by_rays(const struct gathered *counts)
+{
+    return fmax(counts->by_rays, counts->median_by_rays);
+}
+
+static double part_by_mesh(const struct gathered *counts)
+{
+    return fmax(counts->by_mesh, counts->median_by_mesh);
 }
 
 /* --- limits --- */
@@ -103,7 +125,8 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
     if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
     bool stuck = (epsilon <= LOWERED * accuracy->coarse_epsilon &&
-                  solver->beyond->answer->counts.by_mesh > STUCK * accuracy->coarse) ||
+                  part_by_mesh(&solver->beyond->answer->counts) >
+                      STUCK * accuracy->coarse) ||
                  epsilon * EPSILON_FACTOR_MOST < SMALLEST_EPSILON;
     if (share > NEARLY_ALL_HELD || (stuck && share > MANY_HELD))
         return hold;
@@ -138,7 +161,7 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 {
     struct criterion *criterion = &solver->model.criterion;
     int before = criterion->final_gather;
-    for (double left = solver->beyond->answer->counts.by_rays;
+    for (double left = part_by_rays(&solver->beyond->answer->counts);
          left > allowed && criterion->final_gather < RAYS_FACTOR_MOST * before &&
          hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
          left *= NOISE_OF_TWICE)
@@ -151,7 +174,7 @@ static void lower_epsilon(struct solver *solver, double allowed)
 {
     struct criterion *criterion = &solver->model.criterion;
     struct accuracy *accuracy = &solver->beyond->accuracy;
-    double mesh = solver->beyond->answer->counts.by_mesh, part = allowed / mesh;
+    double mesh = part_by_mesh(&solver->beyond->answer->counts), part = allowed / mesh;
     double lower = fmax(EPSILON_FACTOR_LEAST, part * part * part);
     lower = fmin(EPSILON_FACTOR_MOST, lower);
     bool much = criterion->epsilon <= LOWERED * accuracy->coarse_epsilon;
@@ -165,8 +188,8 @@ static void lower_epsilon(struct solver *solver, double allowed)
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
 static bool tighten(struct solver *solver, int64_t links, bool *lowered)
 {
-    double by_rays = solver->beyond->answer->counts.by_rays;
-    double by_mesh = solver->beyond->answer->counts.by_mesh;
+    double by_rays = part_by_rays(&solver->beyond->answer->counts);
+    double by_mesh = part_by_mesh(&solver->beyond->answer->counts);
     double aim = AIM * solver->model.criterion.accuracy;
     enum hold mesh = hold_of_mesh(solver, links);
     enum hold rays = hold_of_rays(solver, solver->model.criterion.final_gather, links);
@@ -198,7 +221,7 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
         accuracy->hold = HOLD_NOTHING;
         return false;
     }
-    if (solver->beyond->answer->counts.error <= solver->model.criterion.accuracy)
+    if (error_of(&solver->beyond->answer->counts) <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds >= ROUNDS_MOST) {
         double share;

@@ -23,6 +23,11 @@
  * forest_order(), so over the scene; BATCH at a time, each batch between those before
  * (multiples of the golden ratio).
  *
+ * The same draws tell whether errors of leaves relative to their own light are as
+ * claimed: by the sums of (B - r)(B - s) and of the claimed squares, each leaf over the
+ * square of its light and 1 / q. Where more than all of the light is claimed, a leaf
+ * counts as much less.
+ *
  * Paths have the answer for their guess: their mean is the truth all the same, and in
  * bright rooms, where paths are long, nearly all noise is gone. (A cube of rho .999 took
  * a hundred times as long.)
@@ -34,6 +39,7 @@
  * Rejected: the difference of two solutions, of which the finer is taken for the truth.
  * Both lack much of the same light, all the more where --max-level is in the way. */
 #include "mpi/beyond/beyond.h"
+#include "mpi/beyond/gathering.h"
 #include "mpi/beyond/spotcheck.h"
 
 #include <math.h>
@@ -78,6 +84,8 @@ struct checking {
     int32_t drawn[BATCH];          /* numbers of the leaves of a batch */
     struct finding found[BATCH];   /* estimates of these leaves by paths */
     double value[BATCH];           /* of each draw, a term of E^2: see above */
+    double own[BATCH];             /* the same relative to the leaf's own light */
+    double claimed[BATCH];         /* the one claimed */
     double noise[BATCH];           /* variance of the paths of each draw, alike */
     struct spotcheck result;
 };
@@ -213,6 +221,15 @@ static void trace_batch(struct checking *c, int batch)
     alloc_free(all);
 }
 
+/* The square of a leaf's deviation, relative to its reflected light `b`. */
+static double claim_of(const struct checking *c, int32_t leaf, struct rgb b)
+{
+    double most = fmax(b.band[0], fmax(b.band[1], b.band[2]));
+    double error = (double)c->solver->beyond->answer->error[leaf];
+    double claim = gathering_deviation(error) / most;
+    return most > 0.0 ? claim * claim : 0.0;
+}
+
 /* Collective. */
 static void check_batch(struct checking *c, int batch)
 {
@@ -232,6 +249,10 @@ static void check_batch(struct checking *c, int batch)
         }
         c->value[k] = scale * rgb_dot(off[0], off[1]);
         c->noise[k] = scale * 0.5 * rgb_dot(apart, apart);
+        double light = rgb_dot(b, b), claim = claim_of(c, leaf, b);
+        double share = light > 0.0 ? 1.0 / (fmax(1.0, claim) * likely) : 0.0;
+        c->own[k] = light > 0.0 ? share * rgb_dot(off[0], off[1]) / light : 0.0;
+        c->claimed[k] = share * claim;
     }
 }
 
@@ -253,13 +274,16 @@ static void choose_paths(struct checking *c, double square)
 static void check_leaves(struct checking *c, double goal)
 {
     struct spotcheck *result = &c->result;
-    double sum = 0.0, squares = 0.0;
+    double sum = 0.0, squares = 0.0, own = 0.0, own_squares = 0.0, claimed = 0.0;
     bool goes_on = true;
     for (int batch = 0; goes_on && result->done; batch++) {
         check_batch(c, batch);
         for (int k = 0; k < BATCH; k++) {
             sum += c->value[k];
             squares += c->value[k] * c->value[k];
+            own += c->own[k];
+            own_squares += c->own[k] * c->own[k];
+            claimed += c->claimed[k];
         }
         result->leaves += BATCH;
         result->paths += 2 * BATCH * c->paths;
@@ -267,6 +291,8 @@ static void check_leaves(struct checking *c, double goal)
         result->square = mean;
         result->doubt = sqrt(fmax(0.0, squares / count - mean * mean) / count);
         double enough = DOUBT * fmax(mean, 0.25 * goal * goal);
+        double doubt = sqrt(fmax(0.0, own_squares - own * own / count));
+        result->own = claimed > 0.0 ? (fmax(0.0, own) + doubt) / claimed : 1.0;
         bool most = batch + 1 == BATCHES_MOST || result->rays > c->rays_most;
         goes_on = batch + 1 < BATCHES_LEAST || (result->doubt > enough && !most);
     }

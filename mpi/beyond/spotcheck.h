@@ -10,6 +10,8 @@ struct spotcheck {
                        reflected radiosity, possibly below 0. Unbiased, but for the end: a
                        check may miss leaves too few to be drawn */
     double doubt;   /* standard deviation of `square` */
+    double own;     /* mean square error of leaves, each relative to its own light, over
+                       the one claimed; with one standard deviation */
     int64_t leaves; /* checked */
     int64_t paths;  /* traced */
     int64_t rays;   /* traced */
@@ -21,7 +23,7 @@ struct spotcheck {
  * has taken as many rays as the gather and some more. The same on all ranks. */
 struct spotcheck spotcheck_run(struct solver *solver, double goal);
 
-/* Puts the measurement in the place of estimates. True if the measurement is larger by
+/* Puts the measurements in the place of estimates. True if the measurement is larger by
  * more than doubt: then the mesh has the surplus, for the estimate of the rays is good;
  * else both parts are off by the same factor. Neither becomes 0 where nothing was
  * found. */
