@@ -44,8 +44,8 @@ enum {
 };
 
 /* A pixel is unsure if its light has this deviation by chance, or is so far from the
- * mesh's, relative to the geometric mean of its light and the light reflected by all
- * surfaces: a display shows differences by the root of light. .015 are about one code of
+ * mesh's, relative to the geometric mean of its light and the mean light reflected in
+ * its space: a display shows differences by the root of light. .015 are about one code of
  * 255. */
 static const double NOISE = 0.015, APART = 0.01; /* 1 */
 
@@ -53,8 +53,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
                               struct final_gather *gather)
 {
     int rays = gather ? gather->model->criterion.final_gather : 0;
-    double mean = gather ? forest_mean_reflected(gather->model->forest) : 0.0;
-    return (struct renderer){octree, shading, gather, rays, false, mean};
+    return (struct renderer){octree, shading, gather, rays, false};
 }
 
 /* --- visible points --- */
@@ -250,9 +249,11 @@ static struct pixel_light show(const struct renderer *renderer,
  * found again; at most `now`: a sure pixel. The variance of n segments of a sequence
  * falls as n^-4/3: as n^-1 by chance, and as n^-3/2 on a grid that an edge cuts. */
 static int more_for(const struct renderer *renderer, const struct pixel_light *pixel,
-                    int count, int now)
+                    const struct pixel_roots *view, int now)
 {
-    double square = rgb_sum(pixel->sum) * count * renderer->mean;
+    const struct final_gather *gather = renderer->gather;
+    int32_t space = view->count > 0 ? node_space(gather->model, view->roots[0]) : 0;
+    double square = rgb_sum(pixel->sum) * view->count * gather->lit[space].reflected;
     double noise = pixel->variance / (NOISE * NOISE * square);
     double apart = now > 1 ? 0.0 : rgb_sum(pixel->apart) / APART;
     int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;
@@ -273,7 +274,7 @@ static struct rgb show_well(const struct renderer *renderer,
     int now = 0, more = 1;
     while (renderer->shading && now < more) {
         now = more;
-        more = more_for(renderer, &pixel, view->count, now);
+        more = more_for(renderer, &pixel, view, now);
         if (more > now)
             pixel = show(renderer, view, seed, more);
     }

@@ -15,7 +15,6 @@ struct renderer {
                                       hold; without `shading`, all; or NULL */
     int rays;                      /* from a leaf; without `shading` for a pixel */
     bool irradiance;               /* H in place of B: as if all were white */
-    double mean;                   /* radiosity of all reflecting surfaces, W/m^2 */
 };
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
