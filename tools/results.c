@@ -188,9 +188,10 @@ static bool show_pictures(struct run *run)
         shading = shade_leaves(run, white ? &irradiance : NULL, gathers);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? answer->gather : NULL);
+    double reflected = forest_mean_reflected(run->solver->model.forest);
     renderer.irradiance = white;
-    if (white)
-        renderer.mean = forest_mean_reflected(&irradiance.forest);
+    if (white && reflected > 0.0)
+        renderer.brighter = forest_mean_reflected(&irradiance.forest) / reflected;
     if (run->options.pixels && renderer.rays < run->options.pixel_rays)
         renderer.rays = run->options.pixel_rays;
     if (gathers)

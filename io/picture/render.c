@@ -53,7 +53,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
                               struct final_gather *gather)
 {
     int rays = gather ? gather->model->criterion.final_gather : 0;
-    return (struct renderer){octree, shading, gather, rays, false};
+    return (struct renderer){octree, shading, gather, rays, false, 1.0};
 }
 
 /* --- visible points --- */
@@ -253,7 +253,8 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
 {
     const struct final_gather *gather = renderer->gather;
     int32_t space = view->count > 0 ? node_space(gather->model, view->roots[0]) : 0;
-    double square = rgb_sum(pixel->sum) * view->count * gather->lit[space].reflected;
+    double mean = renderer->brighter * gather->lit[space].reflected;
+    double square = rgb_sum(pixel->sum) * view->count * mean;
     double noise = pixel->variance / (NOISE * NOISE * square);
     double apart = now > 1 ? 0.0 : rgb_sum(pixel->apart) / APART;
     int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;

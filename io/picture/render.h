@@ -15,6 +15,7 @@ struct renderer {
                                       hold; without `shading`, all; or NULL */
     int rays;                      /* from a leaf; without `shading` for a pixel */
     bool irradiance;               /* H in place of B: as if all were white */
+    double brighter;               /* mean of H, if that is shown, over that of B; or 1 */
 };
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
