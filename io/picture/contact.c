@@ -2,13 +2,14 @@
  *
  * At the foot of a block in the shade light falls off towards the floor, within a leaf,
  * of which the mesh has the mean: the block seems to float. Where a leaf touches a
- * surface, or this stands on it, half of the directions at the line of contact end there:
- * so light changes over the leaf if the surface sends less than arrives on the leaf. Such
- * a leaf, when it is first seen, is divided into tiles, and its reflected light is found
- * at their corners as for covered leaves, by the same directions at all corners: their
- * noise is the same, and makes no pattern. A corner behind the surface that stands on the
- * leaf takes the light before it. */
+ * surface, half of the directions at the line of contact end there: so light changes over
+ * the leaf if the surface sends less than arrives on the leaf. Such a leaf, when it is
+ * first seen, is divided into tiles, and its reflected light is found at their corners,
+ * as at the points of covered leaves, and interpolated. Rays have the same directions at
+ * all corners: their noise is the same, and makes no pattern. */
 #include "io/picture/contact.h"
+
+#include <math.h>
 
 #include "geom/alloc.h"
 #include "rad/beyond/sample.h"
@@ -16,12 +17,16 @@
 /* A surface is dark if it sends less than this part of the light on the leaf, 1. */
 static const double DARK = 0.8;
 
+/* A surface on the way from the middle of a leaf to its edge ends the leaf after this
+ * part of the way; before, it stands on the leaf. */
+static const double ENDS = 0.97;
+
 /* Tiles along an edge of a leaf, and their corners. */
-enum { TILES = 3, CORNERS = (TILES + 1) * (TILES + 2) / 2 };
+enum { TILES = 2, CORNERS = (TILES + 1) * (TILES + 2) / 2 };
 
 /* Rays from a corner are those from a leaf over FEWER; segments to lamps from a point
  * met. */
-enum { FEWER = 4, SEGMENTS = 8 };
+enum { FEWER = 2, SEGMENTS = 8 };
 
 /* A leaf, and what its light is found by. */
 struct spot {
@@ -34,7 +39,7 @@ struct spot {
 };
 
 /* Finds what is met first on the way from the leaf's middle to a point x of it, and a
- * little farther; `share`: of the way to x. */
+ * little farther, rising a little; `share`: of the way to x. */
 static bool is_met(const struct spot *spot, struct vec3 x, struct octree_hit *hit,
                    double *share)
 {
@@ -84,7 +89,8 @@ static bool sends_less(const struct spot *spot, int32_t root,
     return rgb_sum(sent) < most;
 }
 
-/* True if the leaf touches a dark surface on one of six ways from its middle. */
+/* True if a dark surface ends the leaf on one of six ways from its middle, and nothing
+ * stands on it: inside of things there is no light to be found. */
 static bool touches_dark(const struct spot *spot)
 {
     const struct forest *forest = spot->shading->forest;
@@ -98,16 +104,18 @@ static bool touches_dark(const struct spot *spot)
     for (int c = 0; c < BANDS; c++)
         if (m->reflectance.band[c] > 0.0)
             arrives += (rest.band[c] - m->emission.band[c]) / m->reflectance.band[c];
+    bool dark = false;
     for (int k = 0; k < 6; k++) {
         struct octree_hit hit;
         struct vec3 x = vec3_middle(corner[k % 3], corner[(k + k / 3) % 3]);
-        int32_t root = is_met(spot, x, &hit, &share)
-                           ? scene_root_on(forest->scene, hit.triangle, hit.front)
-                           : -1;
-        if (root >= 0 && sends_less(spot, root, &hit, DARK * arrives))
-            return true;
+        if (!is_met(spot, x, &hit, &share))
+            continue;
+        if (share < ENDS)
+            return false;
+        int32_t root = scene_root_on(forest->scene, hit.triangle, hit.front);
+        dark = dark || (root >= 0 && sends_less(spot, root, &hit, DARK * arrives));
     }
-    return false;
+    return dark;
 }
 
 /* Returns the radiosity at the point x of the leaf by all but the light of lamps. */
@@ -116,11 +124,7 @@ static struct rgb find_rest(const struct spot *spot, struct vec3 x)
     static const double BEFORE = 0.97;
     const struct material *m = forest_material(spot->shading->forest, spot->leaf);
     int rays = (spot->gather->model->criterion.final_gather + FEWER - 1) / FEWER;
-    struct octree_hit hit;
-    double share = 1.0;
-    if (!is_met(spot, x, &hit, &share) || share > 1.0)
-        share = 1.0;
-    x = vec3_add(spot->middle, vec3_scale(vec3_sub(x, spot->middle), BEFORE * share));
+    x = vec3_add(spot->middle, vec3_scale(vec3_sub(x, spot->middle), BEFORE));
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = spot->plane,
                                    .root = root_of(spot->shading->forest, spot->leaf)};
@@ -137,25 +141,43 @@ static int corner_number(int i, int j)
     return j * (TILES + 1) - j * (j - 1) / 2 + i;
 }
 
-/* Finds whether a leaf has a contact, and its tiles. */
+/* Finds whether a leaf has a contact, and its tiles, half way to the mean light of the
+ * mesh, in factors: both have noise, that of the tiles common to all. */
 static void see(struct final_gather *gather, const struct shading *shading, int32_t leaf)
 {
+    static const double MOST = 2.0; /* factor on the light of the tiles */
     const struct forest *forest = shading->forest;
     struct triangle triangle = forest_triangle(forest, leaf);
+    int32_t root = root_of(forest, leaf);
     struct spot spot = {shading, gather, leaf, triangle,
-                        scene_root_plane(forest->scene, root_of(forest, leaf)),
+                        scene_root_plane(forest->scene, root),
                         triangle_centroid(&triangle)};
     shading->seen[leaf] = true;
     if (!touches_dark(&spot))
         return;
-    shading->tiles[leaf] = alloc_array(CORNERS, sizeof *shading->tiles[leaf]);
+    struct rgb *tiles = alloc_array(CORNERS, sizeof *tiles);
+    struct rgb found = {{0.0, 0.0, 0.0}}, mesh = found;
+    struct triangle whole = scene_root_triangle(forest->scene, root);
     for (int j = 0; j <= TILES; j++)
         for (int i = 0; i + j <= TILES; i++) {
-            struct vec3 weight = {1.0 - (double)(i + j) / TILES, (double)i / TILES,
+            int k = TILES - i - j, ends = (i == 0) + (j == 0) + (k == 0);
+            double around = ends == 2 ? 1.0 : ends == 1 ? 3.0 : 6.0; /* tiles */
+            struct vec3 weight = {(double)k / TILES, (double)i / TILES,
                                   (double)j / TILES};
-            shading->tiles[leaf][corner_number(i, j)] =
-                find_rest(&spot, corners_mean(spot.triangle.corner, weight));
+            struct vec3 x = corners_mean(triangle.corner, weight);
+            double at[3];
+            tiles[corner_number(i, j)] = find_rest(&spot, x);
+            triangle_weights(&whole, x, at);
+            rgb_add(&found, around, tiles[corner_number(i, j)]);
+            rgb_add(&mesh, around, shading_at(shading, shading->values, root, at));
         }
+    for (int c = 0; c < BANDS; c++) {
+        double factor = found.band[c] > 0.0 ? mesh.band[c] / found.band[c] : 1.0;
+        factor = sqrt(real_max(1.0 / MOST, real_min(MOST, factor)));
+        for (int k = 0; k < CORNERS; k++)
+            tiles[k].band[c] *= factor;
+    }
+    shading->tiles[leaf] = tiles;
 }
 
 bool contact_at(struct final_gather *gather, const struct shading *shading, int32_t leaf,
