@@ -16,7 +16,8 @@
  *       3               9
  *
  * Ranks have the same number of pairs, but for one, and each a part of the costly and of
- * the cheap pairs of each line. Rejected: whole lines in turn (of 32 lines the first has
+ * the cheap pairs of each line. A rank steps from one of its pairs to the next and meets
+ * no other. Rejected: whole lines in turn (of 32 lines the first has
  * 31 pairs more than the last, and a large root makes its whole line costly).
  *
  * Pairs are linked in rounds. Before each all ranks agree whether there is a next one:
@@ -71,25 +72,45 @@ static bool begin_round(struct solver *solver, int64_t number, int64_t pairs)
     return false;
 }
 
+/* A pair of roots, by their numbers in a list. */
+struct pair {
+    int64_t i, j;
+};
+
+/* Goes `steps` pairs on, through lines of `count` roots. */
+static void step(struct pair *pair, int64_t steps, int64_t count)
+{
+    pair->j += steps;
+    for (; pair->j >= count && pair->i < count; pair->i++)
+        pair->j += pair->i + 2 - count; /* the next line begins behind its diagonal */
+}
+
 /* Collective. Links the pairs of these roots, each rank its own. False if a signal or the
  * memory limit has ended the step. */
 static bool link_pairs(struct solver *solver, const int32_t *roots, int64_t count)
 {
     struct model *model = &solver->model;
-    int64_t number = 0, pairs = count * (count - 1) / 2;
-    for (int64_t i = 0; i < count; i++) {
-        struct facet facet_i = facet_make(model->forest, roots[i]);
-        progress_tick_pairs(solver->progress, i, count);
-        for (int64_t j = i + 1; j < count; j++, number++) {
-            if (number % ROUND == 0 && !begin_round(solver, number, pairs))
-                return false;
-            if (number % solver->comm->size != solver->comm->rank || signals_seen())
-                continue;
-            struct facet facet_j = facet_make(model->forest, roots[j]);
+    int64_t number = solver->comm->rank, pairs = count * (count - 1) / 2, line = -1;
+    struct pair at = {0, 1};
+    struct facet facet_i;
+    step(&at, number, count);
+    for (int64_t round = 0; round < pairs; round += ROUND) {
+        if (!begin_round(solver, round, pairs))
+            return false;
+        int64_t end = pairs - round < ROUND ? pairs : round + ROUND;
+        while (number < end && !signals_seen()) {
+            if (at.i != line) {
+                line = at.i;
+                facet_i = facet_make(model->forest, roots[line]);
+                progress_tick_pairs(solver->progress, line, count);
+            }
+            struct facet facet_j = facet_make(model->forest, roots[at.j]);
             struct link link;
-            if (model->method.make_link(model, roots[i], &facet_i, roots[j], &facet_j,
-                                        NULL, &link))
+            if (model->method.make_link(model, roots[line], &facet_i, roots[at.j],
+                                        &facet_j, NULL, &link))
                 link_list_append(&solver->links, link);
+            number += solver->comm->size;
+            step(&at, solver->comm->size, count);
         }
     }
     exchange_notices(solver);
