@@ -164,6 +164,7 @@ bool compute_light(struct run *run)
             if (!end_pass(run, first_level))
                 return false;
         }
+        solver_complete(solver);
         finish = finish_light(run);              /* 9: the final gather */
     } while (finish == FINISH_AGAIN);
     return finish == FINISH_DONE;

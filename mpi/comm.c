@@ -211,42 +211,54 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
+void comm_tell(const struct comm *comm, const int *numbers, int *told)
+{
+    MPI_Request request;
+    MPI_Ialltoall(numbers, 1, MPI_INT, told, 1, MPI_INT, comm->handle, &request);
+    comm_wait(&request);
+}
+
 /* One message to each rank with records to get: no count is too large for MPI, and ranks
  * with nothing for each other need not meet. The records of a rank for itself are
  * copied. */
-void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
-                    size_t bytes, int64_t *arriving)
+void comm_deliver(const struct comm *comm, const void *records, const int *counts,
+                  void *arriving, const int *expected, size_t bytes)
 {
-    int *receive = alloc_array((size_t)comm->size, sizeof *receive);
-    MPI_Request request;
-    MPI_Ialltoall(counts, 1, MPI_INT, receive, 1, MPI_INT, comm->handle, &request);
-    comm_wait(&request);
-    *arriving = 0;
-    for (int r = 0; r < comm->size; r++)
-        *arriving += receive[r];
-    char *arrived = alloc_array((size_t)*arriving, bytes), *in = arrived;
-    const char *out = records;
     MPI_Datatype record = record_of(bytes);
     MPI_Request *requests = alloc_array(2 * (size_t)comm->size, sizeof *requests);
+    const char *out = records;
+    char *in = arriving;
     int messages = 0;
     for (int r = 0; r < comm->size; r++) {
         bool is_other = r != comm->rank;
         if (!is_other && counts[r] > 0)
             memcpy(in, out, (size_t)counts[r] * bytes);
-        if (is_other && receive[r] > 0)
-            MPI_Irecv(in, receive[r], record, r, TAG_EXCHANGE, comm->handle,
+        if (is_other && expected[r] > 0)
+            MPI_Irecv(in, expected[r], record, r, TAG_EXCHANGE, comm->handle,
                       &requests[messages++]);
         if (is_other && counts[r] > 0)
             MPI_Isend(out, counts[r], record, r, TAG_EXCHANGE, comm->handle,
                       &requests[messages++]);
-        in += (size_t)receive[r] * bytes;
+        in += (size_t)expected[r] * bytes;
         out += (size_t)counts[r] * bytes;
     }
     for (int i = 0; i < messages; i++)
         comm_wait_message(&requests[i]);
     MPI_Type_free(&record);
     alloc_free(requests);
-    alloc_free(receive);
+}
+
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
+                    size_t bytes, int64_t *arriving)
+{
+    int *expected = alloc_array((size_t)comm->size, sizeof *expected);
+    comm_tell(comm, counts, expected);
+    *arriving = 0;
+    for (int r = 0; r < comm->size; r++)
+        *arriving += expected[r];
+    void *arrived = alloc_array((size_t)*arriving, bytes);
+    comm_deliver(comm, records, counts, arrived, expected, bytes);
+    alloc_free(expected);
     return arrived;
 }
 

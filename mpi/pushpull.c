@@ -20,6 +20,7 @@ void solver_push_pull_jacobi(struct solver *solver)
                                      .absorbed = sums.absorbed,
                                      .change = sums.change,
                                      .arriving = sums.arriving};
+    solver->account.leaves = sums.leaves;
 }
 
 void solver_push_pull(struct solver *solver)
@@ -27,6 +28,7 @@ void solver_push_pull(struct solver *solver)
     double start = comm_seconds();
     solver->turn.iteration++;
     solver->steps.push_pull(solver);
+    solver->turn.complete = solver->comm->size == 1;
     solver->ballot.split = solver->turn.split_here;
     solver->ballot.links = solver->links.count;
     solver->ballot.divided = own_new_patches(solver);

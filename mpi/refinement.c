@@ -6,7 +6,8 @@
  *
  * A level begins with one exchange: of loads, the first two steps of LoadBalance, and of
  * counts by which all ranks decide alike whether there is a level, and room for its links
- * (mpi/memory.h). Links stay where they were made, and light is transferred there. */
+ * (mpi/memory.h). At the end new links settle where light is transferred over them
+ * (mpi/assign.c). */
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -181,6 +182,7 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
         level->phase.bytes = BYTES_PER_WIRE_LINK * traffic.sent;
         alloc_free(destination);
     }
+    solver_learn(solver, prolific);
     share->predicted = load_of_all(prolific);
     level->start = comm_seconds();
     level->work = model_work(&solver->model);
@@ -260,7 +262,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
             model->method.keep_link(model, &link, solver->turn.pass == 1);
         solver->links.items[kept++] = link;
     }
-    solver->links.count = kept;
+    solver->links.count = solver->turn.settled = kept;
     ledger_add(&solver->account.ledger, looks);
     solver->account.seconds[PHASE_LOOKS] += comm_seconds() - start;
     solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
@@ -336,6 +338,8 @@ bool solver_refine(struct solver *solver)
     alloc_free(level.loads);
     link_list_free(&prolific);
     share_splits(solver);
+    if (!solver->turn.stop)
+        solver_settle_links(solver);
     solver->turn.pass -= solver->turn.stop != 0;
     return !solver->turn.stop;
 }

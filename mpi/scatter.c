@@ -1,117 +1,269 @@
-/* Step 7: the homes tell all ranks the radiosities of their leaves, and their ballots.
+/* Step 7: proxies get the radiosities of their patches.
  *
- * All ranks know the trees since the end of refinement, and which leaves each is home to:
- * so 24 bytes a leaf are sent, in the order of the routes, the ballot of the home behind
- * them, and nothing else. Inner patches get their means. */
+ * "This step is the inverse of Step 5" (Sec. 3.2). A rank has proxies of the patches of
+ * other homes at the ends of its links. The rank names a new one to the home once, and
+ * from then on both have the patch in their lists of each other. Step 5 sends flux along
+ * the lists, step 7 sends radiosities back, without IDs, counts or searching. A proxy
+ * stays one.
+ *
+ * While links are split, a rank gets links whose ends are no proxies there, and children
+ * of patches come to have links. Before each level the homes are asked for the
+ * radiosities of these, which hold for the pass. A patch made in the pass has that of the
+ * patch that was split.
+ *
+ * Rejected: the radiosities of all leaves to all ranks, but for once at the end, for what
+ * looks at the whole solution. */
 #include "mpi/solver.h"
 
 #include <string.h>
 
 #include "geom/alloc.h"
 
-/* --- routes --- */
+/* --- lists --- */
+
+static void route_free(struct route *route)
+{
+    alloc_free(route->patches);
+    alloc_free(route->counts);
+    *route = (struct route){0};
+}
 
 void routes_free(struct routes *routes)
 {
-    alloc_free(routes->leaves);
-    alloc_free(routes->counts);
-    alloc_free(routes->at);
-    alloc_free(routes->radiosities);
+    route_free(&routes->proxies);
+    route_free(&routes->originals);
+    alloc_free(routes->known);
     *routes = (struct routes){0};
 }
 
-/* The next leaf of all trees whose B can change: a dark one stays at 0. */
-static int32_t next_leaf(const struct forest *forest, int32_t leaf)
+/* Puts the patches of `more` behind those of the same rank. */
+static void route_extend(struct route *route, const struct route *more, int ranks)
 {
-    do
-        leaf = forest_next_leaf(forest, leaf);
-    while (leaf >= 0 && material_is_dark(forest_material(forest, leaf)));
-    return leaf;
+    int64_t count = route->count + more->count;
+    int32_t *all = alloc_array((size_t)count, sizeof *all), *to = all;
+    const int32_t *old = route->patches, *new = more->patches;
+    if (!route->counts)
+        route->counts = alloc_array((size_t)ranks, sizeof *route->counts);
+    for (int r = 0; r < ranks; r++) {
+        for (int i = 0; i < route->counts[r]; i++)
+            *to++ = *old++;
+        for (int i = 0; i < more->counts[r]; i++)
+            *to++ = *new++;
+        route->counts[r] += more->counts[r];
+    }
+    alloc_free(route->patches);
+    route->patches = all;
+    route->count = count;
+}
+
+/* An empty route, with room. */
+static struct route route_create(int ranks, int64_t count)
+{
+    return (struct route){alloc_array((size_t)count, sizeof(int32_t)),
+                          alloc_array((size_t)ranks, sizeof(int)), count};
+}
+
+/* These patches, home by home. */
+static struct route route_to_homes(const struct solver *solver, const int32_t *patches,
+                                   int64_t count)
+{
+    const struct patch *all = solver->model.forest->patches;
+    const int *owner = solver->homes.owner;
+    struct route route = route_create(solver->comm->size, count);
+    int *at = alloc_array((size_t)solver->comm->size, sizeof *at);
+    for (int64_t i = 0; i < count; i++)
+        route.counts[owner[all[patches[i]].id.root]]++;
+    comm_displacements(solver->comm, route.counts, at);
+    for (int64_t i = 0; i < count; i++)
+        route.patches[at[owner[all[patches[i]].id.root]]++] = patches[i];
+    alloc_free(at);
+    return route;
+}
+
+/* Collective. The patches at home here that other ranks have in theirs, rank by rank. */
+static struct route route_to_proxies(struct solver *solver, const struct route *asked,
+                                     enum cargo cargo)
+{
+    struct forest *forest = solver->model.forest;
+    int ranks = solver->comm->size, *counts = alloc_array((size_t)ranks, sizeof *counts);
+    int64_t all = 0, messages = comm_counts().messages;
+    comm_tell(solver->comm, asked->counts, counts);
+    for (int r = 0; r < ranks; r++)
+        all += counts[r];
+    struct route route = route_create(ranks, all);
+    struct patch_id *ids = alloc_array((size_t)asked->count, sizeof *ids);
+    struct patch_id *own = alloc_array((size_t)all, sizeof *own);
+    for (int64_t i = 0; i < asked->count; i++)
+        ids[i] = forest->patches[asked->patches[i]].id;
+    comm_deliver(solver->comm, ids, asked->counts, own, counts, sizeof *ids);
+    for (int64_t i = 0; i < all; i++)
+        route.patches[i] = forest_reach(forest, own[i]);
+    memcpy(route.counts, counts, (size_t)ranks * sizeof *counts);
+    solver->account.bytes[cargo] += all * (int64_t)sizeof *own;
+    solver->account.messages[cargo] += comm_counts().messages - messages;
+    alloc_free(own);
+    alloc_free(ids);
+    alloc_free(counts);
+    return route;
+}
+
+/* Collective. Radiosities go from originals to proxies. */
+static void send_values(struct solver *solver, const struct route *originals,
+                        const struct route *proxies, enum cargo cargo)
+{
+    struct rgb *radiosity = solver->model.forest->radiosity;
+    int64_t messages = comm_counts().messages;
+    int64_t sent = originals->count, got = proxies->count;
+    struct rgb *out = alloc_array((size_t)sent, sizeof *out);
+    struct rgb *in = alloc_array((size_t)got, sizeof *in);
+    for (int64_t i = 0; i < sent; i++)
+        out[i] = radiosity[originals->patches[i]];
+    comm_deliver(solver->comm, out, originals->counts, in, proxies->counts, sizeof *out);
+    for (int64_t i = 0; i < got; i++)
+        radiosity[proxies->patches[i]] = in[i];
+    solver->account.bytes[cargo] += sent * (int64_t)sizeof *out;
+    solver->account.messages[cargo] += comm_counts().messages - messages;
+    solver->account.copied += sent + got;
+    alloc_free(in);
+    alloc_free(out);
+}
+
+/* Collective. Gets the radiosities of these patches from their homes, and makes them
+ * proxies, unless `routes` is NULL. */
+static void ask(struct solver *solver, const int32_t *patches, int64_t count,
+                struct routes *routes, enum cargo cargo)
+{
+    struct route asked = route_to_homes(solver, patches, count);
+    struct route own = route_to_proxies(solver, &asked, cargo);
+    send_values(solver, &own, &asked, cargo);
+    if (routes) {
+        route_extend(&routes->proxies, &asked, solver->comm->size);
+        route_extend(&routes->originals, &own, solver->comm->size);
+    }
+    route_free(&own);
+    route_free(&asked);
+}
+
+/* --- proxies --- */
+
+/* Marks in routes->known: a proxy. */
+enum { ALWAYS = INT32_MAX };
+
+/* True of a patch of another home that is not marked so far, or with less; marks it. */
+static bool is_new(struct solver *solver, struct routes *routes, int32_t p, int32_t mark)
+{
+    const struct forest *forest = solver->model.forest;
+    int64_t before = routes->capacity;
+    if (solver->homes.own[forest->patches[p].id.root])
+        return false;
+    RESERVE(routes->known, &routes->capacity, forest->count);
+    if (before < routes->capacity)
+        memset(routes->known + before, 0,
+               (size_t)(routes->capacity - before) * sizeof *routes->known);
+    if (routes->known[p] >= mark)
+        return false;
+    routes->known[p] = mark;
+    return true;
 }
 
 void routes_renew(struct solver *solver)
 {
-    struct routes *routes = &solver->routes;
-    const struct forest *forest = solver->model.forest;
-    const int *owner = solver->homes.owner;
-    int ranks = solver->comm->size;
-    if (routes->trees == forest->count)
-        return;
-    routes_free(routes);
-    routes->trees = forest->count;
-    routes->counts = alloc_array((size_t)ranks, sizeof *routes->counts);
-    routes->at = alloc_array((size_t)ranks + 1, sizeof *routes->at);
-    int32_t *leaves = alloc_array((size_t)forest->count, sizeof *leaves), count = 0;
-    for (int32_t p = next_leaf(forest, -1); p >= 0; p = next_leaf(forest, p)) {
-        routes->counts[owner[forest->patches[p].id.root]]++;
-        leaves[count++] = p;
+    const struct model *model = &solver->model;
+    struct link_list *links = &solver->links;
+    int32_t *wanted = alloc_array((size_t)model->forest->count, sizeof *wanted);
+    int64_t count = 0;
+    for (int64_t i = 0; i < links->count; i++) {
+        int32_t ends[METHOD_ENDS_MAX] = {links->items[i].p, links->items[i].q};
+        int number = 2;
+        if (model->method.ends)
+            number = model->method.ends(model, &links->items[i], ends);
+        for (int k = 0; k < number; k++)
+            if (is_new(solver, &solver->routes, ends[k], ALWAYS))
+                wanted[count++] = ends[k];
     }
-    for (int home = 0; home < ranks; home++)
-        routes->counts[home] += BALLOT_RECORDS;
-    size_t all = (size_t)comm_displacements(solver->comm, routes->counts, routes->at);
-    routes->leaves = alloc_array(all, sizeof *routes->leaves);
-    routes->radiosities = alloc_array(all, sizeof *routes->radiosities);
-    for (int32_t i = 0; i < count; i++)
-        routes->leaves[routes->at[owner[forest->patches[leaves[i]].id.root]]++] =
-            leaves[i];
-    alloc_free(leaves);
-    routes->at[ranks] = (int)comm_displacements(solver->comm, routes->counts, routes->at);
+    ask(solver, wanted, count, &solver->routes, CARGO_LIGHT);
+    solver->account.held = solver->routes.proxies.count;
+    alloc_free(wanted);
+}
+
+/* The patch, from before this pass, of which a patch has the radiosity. */
+static int32_t origin_of(const struct solver *solver, int32_t p)
+{
+    while (p >= solver->turn.first_new)
+        p = solver->model.forest->patches[p].parent;
+    return p;
+}
+
+void solver_learn(struct solver *solver, const struct link_list *list)
+{
+    enum { EACH = 10 }; /* two ends and their children */
+    struct forest *forest = solver->model.forest;
+    if (solver->turn.complete)
+        return;
+    int32_t *nodes = alloc_array(EACH * (size_t)list->count, sizeof *nodes);
+    int32_t *wanted = alloc_array(EACH * (size_t)list->count, sizeof *wanted);
+    int64_t count = 0, unknown = 0;
+    for (int64_t i = 0; i < 2 * list->count; i++) {
+        int32_t end = i % 2 ? list->items[i / 2].p : list->items[i / 2].q;
+        nodes[count++] = end;
+        for (int k = 0; k < 4 && !patch_is_leaf(&forest->patches[end]); k++)
+            nodes[count++] = forest->patches[end].children + k;
+    }
+    for (int64_t i = 0; i < count; i++) {
+        int32_t p = origin_of(solver, nodes[i]);
+        if (is_new(solver, &solver->routes, p, (int32_t)solver->turn.pass))
+            wanted[unknown++] = p;
+    }
+    ask(solver, wanted, unknown, NULL, CARGO_LIGHT);
+    for (int64_t i = 0; i < count; i++)
+        forest->radiosity[nodes[i]] = forest->radiosity[origin_of(solver, nodes[i])];
+    alloc_free(wanted);
+    alloc_free(nodes);
 }
 
 /* --- step 7 --- */
 
-/* The place of a home's ballot in `radiosities`. */
-static struct rgb *ballot_of(const struct routes *routes, int home)
+/* Collective. All ranks get the radiosities of all leaves, and pull. */
+static void renew_all(struct solver *solver, enum cargo cargo)
 {
-    return routes->radiosities + routes->at[home + 1] - BALLOT_RECORDS;
+    struct forest *forest = solver->model.forest;
+    struct routes *whole = &solver->whole;
+    double start = comm_seconds();
+    int32_t *wanted = alloc_array((size_t)forest->count, sizeof *wanted);
+    int64_t count = 0;
+    for (int32_t p = 0; p < forest->count; p++)
+        if (patch_is_leaf(&forest->patches[p]) && is_new(solver, whole, p, ALWAYS) &&
+            !material_is_dark(forest_material(forest, p))) /* B of dark ones stays 0 */
+            wanted[count++] = p;
+    if (whole->proxies.counts)
+        send_values(solver, &whole->originals, &whole->proxies, cargo);
+    ask(solver, wanted, count, whole, cargo);
+    forest_average(forest);
+    solver->turn.complete = true;
+    alloc_free(wanted);
+    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
-/* Packs the radiosities of the own leaves, and the own ballot. */
-static void pack(struct solver *solver, const struct rgb *vector)
+void solver_renew_all(struct solver *solver)
 {
-    const struct routes *routes = &solver->routes;
-    int rank = solver->comm->rank, end = routes->at[rank] + routes_leaves(routes, rank);
-    for (int i = routes->at[rank]; i < end; i++)
-        routes->radiosities[i] = vector[routes->leaves[i]];
-    memcpy(ballot_of(routes, rank), &solver->ballot, sizeof solver->ballot);
-    solver->account.copied += routes_leaves(routes, rank);
+    renew_all(solver, CARGO_LIGHT);
 }
 
-/* Gives the leaves of a home the values received from there. */
-static void renew_home(struct solver *solver, int home, struct rgb *vector)
+void solver_complete(struct solver *solver)
 {
-    const struct routes *routes = &solver->routes;
-    int end = routes->at[home] + routes_leaves(routes, home);
-    for (int i = routes->at[home]; i < end; i++)
-        vector[routes->leaves[i]] = routes->radiosities[i];
-    solver->account.copied += routes_leaves(routes, home);
+    if (!solver->turn.complete)
+        renew_all(solver, CARGO_WHOLE);
 }
 
-void solver_share(struct solver *solver, struct rgb *vector)
+void solver_renew_proxies(struct solver *solver)
 {
     double start = comm_seconds();
-    const struct comm *comm = solver->comm;
-    const struct routes *routes = &solver->routes;
-    size_t bytes = sizeof *routes->radiosities;
-    int64_t messages = comm_counts().messages;
-    struct ballot sum = {0}, ballot;
-    pack(solver, vector);
-    comm_share(comm, routes->radiosities, routes->counts, routes->at, bytes);
-    for (int home = 0; home < comm->size; home++) {
-        renew_home(solver, home, vector);
-        memcpy(&ballot, ballot_of(routes, home), sizeof ballot);
-        ballot_add(&sum, &ballot);
-    }
-    for (int64_t p = solver->model.forest->count - 1; p >= 0; p--)
-        patch_average(solver->model.forest, (int32_t)p, vector);
-    solver->ballot = sum;
-    solver->account.bytes[CARGO_LIGHT] +=
-        (int64_t)bytes * (routes->at[comm->size] - routes->counts[comm->rank]);
-    solver->account.messages[CARGO_LIGHT] += comm_counts().messages - messages;
+    send_values(solver, &solver->routes.originals, &solver->routes.proxies, CARGO_LIGHT);
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
 void solver_scatter(struct solver *solver)
 {
-    solver_share(solver, solver->model.forest->radiosity);
+    if (solver->steps.scatter)
+        solver->steps.scatter(solver);
 }

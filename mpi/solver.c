@@ -15,6 +15,7 @@
 const struct steps STEPS_PAPER = {
     .transfer = solver_transfer,
     .push_pull = solver_push_pull_jacobi,
+    .scatter = solver_renew_proxies,
     .vote = solver_vote_jacobi,
 };
 
@@ -28,7 +29,7 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->model = model_make(scene, octree, forest_create(scene), criterion, method);
     solver->steps = STEPS_PAPER;
     solver->memory.rays = criterion->final_gather;
-    solver->turn.fresh = true;
+    solver->turn.fresh = solver->turn.complete = true;
     solver->homes.owner = alloc_array(roots, sizeof *solver->homes.owner);
     solver->homes.own = alloc_array(roots, sizeof *solver->homes.own);
     return solver;
@@ -45,6 +46,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->homes.owner);
     alloc_free(solver->homes.own);
     routes_free(&solver->routes);
+    routes_free(&solver->whole);
     ledger_free(&solver->account.ledger);
     alloc_free(solver->account.proxies);
     alloc_free(solver);
@@ -83,7 +85,7 @@ static void report_seconds(const struct solver *solver, struct stats *stats)
     alloc_free(all);
 }
 
-enum { COUNT_SUMS = 9 + 4 };
+enum { COUNT_SUMS = 10 + 4 };
 
 /* 0: open, 1: seen, 2: partly, 3: unseen. */
 static int kind_of(const struct link *link)
@@ -103,14 +105,15 @@ static void report_counts(const struct solver *solver, struct stats *stats)
                                solver->account.bytes[CARGO_LINKS],
                                solver->account.bytes[CARGO_FLUX],
                                solver->account.bytes[CARGO_LIGHT],
+                               solver->account.bytes[CARGO_WHOLE],
                                solver->model.walled_off,
                                solver->model.rays_spared,
                                peak_memory()};
     const int64_t *messages = solver->account.messages;
-    int64_t sum[COUNT_SUMS], largest[2 + CARGO_COUNT] = {own[8], comm_counts().messages};
+    int64_t sum[COUNT_SUMS], largest[2 + CARGO_COUNT] = {own[9], comm_counts().messages};
     memcpy(largest + 2, messages, CARGO_COUNT * sizeof *messages);
     for (int64_t i = 0; i < solver->links.count; i++)
-        own[9 + kind_of(&solver->links.items[i])]++;
+        own[10 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
     MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle,
                    &request);
@@ -119,13 +122,13 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->node_tests = sum[1];
     stats->triangle_tests = sum[2];
     memcpy(stats->bytes_of, sum + 3, sizeof stats->bytes_of);
-    stats->walled_off = sum[6];
-    stats->rays_spared = sum[7];
-    stats->peak_rss_bytes_sum = sum[8];
-    stats->links_open = sum[9];
-    stats->links_seen = sum[10];
-    stats->links_partly = sum[11];
-    stats->links_unseen = sum[12];
+    stats->walled_off = sum[7];
+    stats->rays_spared = sum[8];
+    stats->peak_rss_bytes_sum = sum[9];
+    stats->links_open = sum[10];
+    stats->links_seen = sum[11];
+    stats->links_partly = sum[12];
+    stats->links_unseen = sum[13];
     MPI_Iallreduce(MPI_IN_PLACE, largest, 2 + CARGO_COUNT, MPI_INT64_T, MPI_MAX,
                    solver->comm->handle, &request);
     comm_wait(&request);
@@ -134,30 +137,12 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     memcpy(stats->messages_with, largest + 2, sizeof stats->messages_with);
 }
 
-/* Patches of other homes at an end of this rank's links. */
-static int64_t count_proxies(const struct solver *solver)
-{
-    const struct forest *forest = solver->model.forest;
-    bool *met = alloc_array((size_t)forest->count, sizeof *met);
-    int64_t count = 0;
-    for (int64_t i = 0; i < solver->links.count; i++) {
-        const int32_t ends[2] = {solver->links.items[i].p, solver->links.items[i].q};
-        for (int k = 0; k < 2; k++) {
-            if (node_is_cluster(ends[k]) || met[ends[k]])
-                continue;
-            met[ends[k]] = true;
-            count += !solver->homes.own[forest->patches[ends[k]].id.root];
-        }
-    }
-    alloc_free(met);
-    return count;
-}
-
 /* Transfers 1 and leaves no trace in the accounts: not a part of the method. */
 static void carry_ones_unseen(struct solver *solver)
 {
     struct account before = solver->account;
     link_list_sort(&solver->links); /* those of a finished, resumed run are not */
+    routes_renew(solver);
     solver_carry_ones(solver);
     solver->account = before;
 }
@@ -221,9 +206,9 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->level_count = solver->account.ledger.level_count;
     memcpy(stats->work, solver->account.ledger.sums, sizeof stats->work);
     stats->exchanges = comm_counts().collectives;
-    int64_t proxies = count_proxies(solver);
     alloc_free(solver->account.proxies);
-    solver->account.proxies = comm_gather_each(solver->comm, &proxies, sizeof proxies);
+    solver->account.proxies = comm_gather_each(
+        solver->comm, &solver->account.held, sizeof *solver->account.proxies);
     stats->proxies = solver->account.proxies;
     report_counts(solver, stats);
     report_seconds(solver, stats);

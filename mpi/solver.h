@@ -27,33 +27,29 @@ struct ballot {
 /* Adds a ballot to a sum of ballots, in any order. */
 void ballot_add(struct ballot *sum, const struct ballot *ballot);
 
-/* The size of a ballot in records of radiosities, with which it travels. */
-enum {
-    BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb)
-};
-
 /* The home of each root, the same on all ranks. */
 struct homes {
     int *owner; /* [roots] its rank */
     bool *own;  /* [roots] owner[root] == rank */
 };
 
-/* The radiosities told by homes to all ranks in step 7, over the same trees: home by home
- * those of leaves whose B can change, roots in order and depth first, and behind them the
- * home's ballot. Found once, so transfers need no IDs, counts or searching. */
-struct routes {
-    int32_t *leaves;         /* [at[ranks]] local number of the leaf of each record */
-    int *counts;             /* [ranks] records of each home */
-    int *at;                 /* [ranks + 1] where those of each home begin */
-    struct rgb *radiosities; /* [at[ranks]] room for the records */
-    int64_t trees;           /* patches there were when the routes were renewed */
+/* Patches that this rank and others have in common, rank by rank. */
+struct route {
+    int32_t *patches; /* [count] local numbers */
+    int *counts;      /* [ranks] patches of each rank */
+    int64_t count;
 };
 
-/* The number of leaves of a home. */
-static inline int routes_leaves(const struct routes *routes, int home)
-{
-    return routes->counts[home] - BALLOT_RECORDS;
-}
+/* The proxies: flux goes from them to the originals, radiosities come back. */
+struct routes {
+    struct route proxies;   /* of this rank, by their homes */
+    struct route originals; /* patches at home here, by the ranks with proxies of them, in
+                               the order there */
+    int32_t *known;         /* [capacity] of patches of other homes: the last pass whose
+                               radiosities are known here; see mpi/scatter.c */
+    int64_t capacity;
+};
+
 
 /* Where the run is. */
 struct turn {
@@ -62,6 +58,8 @@ struct turn {
     int64_t first_new;  /* patches from here on were created in this pass */
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links split by this rank in this pass */
+    int64_t settled;    /* links up to here are where they stay */
+    bool complete;      /* all ranks know the radiosities of all patches */
     bool fresh;         /* links have changed since the last transfer */
     int stop;           /* signal of some rank, 0: none; the same on all */
 };
@@ -73,6 +71,8 @@ struct account {
     int64_t messages[CARGO_COUNT]; /* as in struct comm_counts */
     int64_t copied;          /* patch records packed or unpacked */
     int64_t recorded[3];     /* of the last three, in the ledger */
+    int64_t leaves;          /* at home here, in the last push-pull */
+    int64_t held;            /* proxies of this rank */
     struct ledger ledger;
     int64_t *proxies;        /* [ranks] see struct stats */
 };
@@ -91,6 +91,7 @@ struct steps {
     void (*transfer)(struct solver *solver, const struct rgb *vector);
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
     void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
+    void (*scatter)(struct solver *solver);     /* 7: radiosities to those in need */
     struct vote (*vote)(struct solver *solver, const struct ballot *sum); /* 8 */
     enum finish (*finish)(struct solver *solver, struct vote *vote);      /* 9 */
     void (*report)(const struct solver *solver, struct stats *stats);
@@ -106,11 +107,12 @@ struct solver {
     struct model model;        /* scene, octree, forest, criterion; the forest is owned */
     struct link_list links;    /* the links living here ("allInteractions") */
     struct homes homes;
-    struct routes routes;      /* of radiosities from the homes to all ranks */
+    struct routes routes;      /* of flux to the homes, and of radiosities back */
+    struct routes whole;       /* the same for all leaves on all ranks */
     struct turn turn;
     struct memory memory;
     struct flux_unit flux;     /* unit of the flux of the last transfer */
-    struct ballot ballot;      /* of this rank after push-pull, of all after scatter */
+    struct ballot ballot;      /* of this rank after push-pull, of all after the vote */
     struct account account;
     struct steps steps;
     struct beyond *beyond;     /* owned; NULL: the paper's method alone */
@@ -142,9 +144,13 @@ void solver_destroy(struct solver *solver);
  * (memory.reached) has ended the step: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
-/* Step 3: re-assignment. Roots get homes with even sums of area, and their links go
- * home. */
+/* Step 3: re-assignment. Roots get homes with even sums of area, and links settle. */
 void solver_assign_roots(struct solver *solver);
+
+/* Collective. The links made since the last call go to the homes of their smaller
+ * patches, and from those with too many links to others. No links move where there are
+ * clusters, which have no home. */
+void solver_settle_links(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches
  * were split. Refinement ends at the memory limit, and does not begin again as long as
@@ -152,7 +158,12 @@ void solver_assign_roots(struct solver *solver);
  * then counts as not begun, without light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Local. Renews the routes, if patches are new. Pre: all ranks have the same trees. */
+/* Collective. Before links are split: this rank learns the radiosities of their ends, and
+ * of the children of these. */
+void solver_learn(struct solver *solver, const struct link_list *list);
+
+/* Collective. Patches of other homes at new ends of own links become proxies. Pre: all
+ * ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
 
@@ -166,17 +177,17 @@ void solver_carry(struct solver *solver, const struct rgb *vector);
 /* The transfer of 1 from all patches in the first band: what arrives are row sums. */
 void solver_carry_ones(struct solver *solver);
 
-/* The largest magnitude of a vector [patches] over patches and bands. */
+/* Collective. The largest magnitude of a vector [patches] over patches and bands. */
 double solver_largest(const struct solver *solver, const struct rgb *vector);
 
 /* Step 6: push-pull on the own roots, and this rank's ballot. */
 void solver_push_pull(struct solver *solver);
 
-/* Step 7: own radiosities and the ballots go to all ranks. */
+/* Step 7: proxies get the radiosities of their patches. */
 void solver_scatter(struct solver *solver);
 
-/* The same with any vector [patches] in place of the radiosities. */
-void solver_share(struct solver *solver, struct rgb *vector);
+/* Collective. All ranks get the radiosities of all patches, unless they have them. */
+void solver_complete(struct solver *solver);
 
 /* Step 8: the verdict on the sum of all ballots. */
 struct vote solver_vote(struct solver *solver);
@@ -184,6 +195,8 @@ struct vote solver_vote(struct solver *solver);
 /* The parts of STEPS_PAPER. */
 void solver_transfer(struct solver *solver, const struct rgb *vector);
 void solver_push_pull_jacobi(struct solver *solver);
+void solver_renew_proxies(struct solver *solver);
+void solver_renew_all(struct solver *solver);
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum);
 
 /* The vote on these sums, for a bound on the remaining error relative to all light. */

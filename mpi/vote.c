@@ -1,14 +1,16 @@
 /* Step 8: the vote on another iteration.
  *
- * Each rank casts a ballot of integers and maxima, which travels with the radiosities of
- * its leaves, and all add them up: on any number of ranks the outcome is the same. A
- * small change of energy ends the iterations, a bound those of mpi/beyond/descent.c.
+ * Each rank casts a ballot of integers and maxima, and all ranks add all ballots up: on
+ * any number of ranks the outcome is the same. A small change of energy ends the
+ * iterations, a bound those of mpi/beyond/descent.c.
  *
  * The escaped power is the power leaving surfaces, emitted or reflected, less the power
  * delivered by links: an open scene's real loss, plus the errors of form factors. */
 #include "mpi/solver.h"
 
 #include <string.h>
+
+#include "geom/alloc.h"
 
 void ballot_add(struct ballot *sum, const struct ballot *ballot)
 {
@@ -54,13 +56,12 @@ static void record_iteration(struct solver *solver)
 {
     int64_t now[] = {solver->account.bytes[CARGO_FLUX],
                      solver->account.bytes[CARGO_LIGHT], solver->account.copied};
-    int own = routes_leaves(&solver->routes, solver->comm->rank);
     struct phase_work phase = {.kind = WORK_TRANSFER,
                                .share.done = solver->links.seen,
                                .bytes = now[0] - solver->account.recorded[0]};
     ledger_add(&solver->account.ledger, phase);
     phase = (struct phase_work){.kind = WORK_OWN,
-                                .share.done = own,
+                                .share.done = solver->account.leaves,
                                 .bytes = now[1] - solver->account.recorded[1]};
     ledger_add(&solver->account.ledger, phase);
     phase = (struct phase_work){.kind = WORK_PATCHES,
@@ -69,8 +70,22 @@ static void record_iteration(struct solver *solver)
     memcpy(solver->account.recorded, now, sizeof now);
 }
 
+/* Collective. The sum of the ballots of all ranks. */
+static struct ballot count_ballots(struct solver *solver)
+{
+    const struct comm *comm = solver->comm;
+    struct ballot sum = {0}, *each;
+    each = comm_gather_each(comm, &solver->ballot, sizeof *each);
+    for (int r = 0; r < comm->size; r++)
+        ballot_add(&sum, &each[r]);
+    solver->account.bytes[CARGO_LIGHT] += (comm->size - 1) * (int64_t)sizeof *each;
+    alloc_free(each);
+    return sum;
+}
+
 struct vote solver_vote(struct solver *solver)
 {
+    solver->ballot = count_ballots(solver);
     solver->turn.stop = (int)solver->ballot.stop;
     struct vote vote = solver->steps.vote(solver, &solver->ballot);
     record_iteration(solver);

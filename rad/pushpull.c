@@ -50,6 +50,7 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
         change += area * fabs(b - radiosity->band[c]);
         radiosity->band[c] = b;
     }
+    sums->leaves++;
     sums->light = flux_add(sums->light, flux_from_watts(model->flux_unit, light));
     sums->arriving =
         flux_add(sums->arriving, flux_from_watts(model->flux_unit, arriving));

@@ -14,6 +14,7 @@ struct push_pull_sums {
     int64_t light;    /* sum over leaves of A B */
     int64_t absorbed; /* sum over leaves of A (1 - rho) H */
     int64_t arriving; /* sum over leaves of A H */
+    int64_t leaves;   /* their number */
     int64_t change;   /* sum over leaves of A |B - B of the iteration before| */
 };
 

@@ -50,7 +50,8 @@ static inline struct criterion criterion_best(double epsilon, int max_level,
     return criterion;
 }
 
-/* Collective. Solves over the links there are, without refinement. */
+/* Collective. Solves over the links there are, without refinement; all ranks get all
+ * light. */
 static inline struct vote solve_links(struct solver *solver)
 {
     struct vote vote;
@@ -60,6 +61,7 @@ static inline struct vote solve_links(struct solver *solver)
         solver_scatter(solver);
         vote = solver_vote(solver);
     } while (vote.again);
+    solver_complete(solver);
     return vote;
 }
 

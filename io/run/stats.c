@@ -217,8 +217,8 @@ static void write_work(FILE *file, const struct stats *stats)
     const int64_t *with = stats->messages_with;
     fprintf(file,
             "  \"messages_with\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64
-            ", \"scatter\": %" PRId64 "},\n",
-            with[CARGO_LINKS], with[CARGO_FLUX], with[CARGO_LIGHT]);
+            ", \"scatter\": %" PRId64 ", \"whole\": %" PRId64 "},\n",
+            with[CARGO_LINKS], with[CARGO_FLUX], with[CARGO_LIGHT], with[CARGO_WHOLE]);
 }
 
 bool stats_write(const struct stats *stats, const char *path, struct error *error)
@@ -234,9 +234,11 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     write_work(output.file, stats);
     fprintf(output.file,
             "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64
-            ", \"scatter\": %" PRId64 ", \"broadcast\": %" PRId64 "},\n",
+            ", \"scatter\": %" PRId64 ", \"whole\": %" PRId64 ", \"broadcast\": %" PRId64
+            "},\n",
             stats->bytes_of[CARGO_LINKS], stats->bytes_of[CARGO_FLUX],
-            stats->bytes_of[CARGO_LIGHT], stats->bytes_broadcast);
+            stats->bytes_of[CARGO_LIGHT], stats->bytes_of[CARGO_WHOLE],
+            stats->bytes_broadcast);
     write_integer(output.file, "peak_rss_bytes", stats->peak_rss_bytes);
     fprintf(output.file, "  \"peak_rss_bytes_sum\": %" PRId64 "\n}\n",
             stats->peak_rss_bytes_sum);

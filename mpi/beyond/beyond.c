@@ -31,6 +31,7 @@ static void report(const struct solver *solver, struct stats *stats)
 void beyond_free_vectors(struct solver *solver)
 {
     routes_free(&solver->routes);
+    routes_free(&solver->whole);
     if (solver->beyond)
         conjugate_free(solver->beyond->descent);
     if (solver->model.clusters)
@@ -77,11 +78,14 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
         solver_create(comm, scene, octree, criterion, method_of(criterion));
     bool conjugate = criterion->solver == SOLVER_CG;
     bool tree = criterion->linking == LINKING_TREE;
+    struct steps *steps = &solver->steps;
+    if (solver->model.method.prepare) /* which reads all radiosities */
+        steps->scatter = solver_renew_all;
     if (!conjugate && !tree)
         return solver;
-    struct steps *steps = &solver->steps;
     beyond_attach(solver);
     if (conjugate) {
+        steps->scatter = NULL; /* after the vote, which changes the light */
         steps->begin = descent_begin;
         steps->vote = descent_vote;
     }

@@ -17,21 +17,28 @@ enum { NEGATIVE = 100 };
  * patches; at 6 % 0.4 % fewer. */
 static const double WHILE_SPLITTING = 0.03;
 
-/* Measures row sums as the irradiances of B = 1, and tells all ranks. */
+static void largest_of_all(void *context, double *numbers, int64_t count)
+{
+    const struct solver *solver = context;
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, numbers, comm_count(solver->comm, count), MPI_DOUBLE,
+                   MPI_MAX, solver->comm->handle, &request);
+    comm_wait(&request);
+}
+
+static void add_of_all(void *context, int64_t *numbers, int64_t count)
+{
+    const struct solver *solver = context;
+    comm_add(solver->comm, numbers, count);
+}
+
+/* Measures row sums as the irradiances of B = 1. */
 void descent_begin(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
-    const struct routes *routes = &solver->routes;
-    struct rgb *rows = alloc_array((size_t)forest->count, sizeof *rows);
-    int rank = solver->comm->rank;
     solver_carry_ones(solver);
-    for (int i = 0; i < routes_leaves(routes, rank); i++) {
-        int32_t leaf = routes->leaves[routes->at[rank] + i];
-        rows[leaf] = leaf_irradiance(forest, leaf, solver->flux);
-    }
-    solver_share(solver, rows);
-    conjugate_begin(solver->beyond->descent, forest, rows);
-    alloc_free(rows);
+    conjugate_begin(solver->beyond->descent, forest, solver->homes.own, solver->flux,
+                    (struct totals){largest_of_all, add_of_all, solver, forest->count});
 }
 
 /* The remaining error, relative to all light, at which iteration over the links ends. */
@@ -46,15 +53,17 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
                            : tolerance;
 }
 
-/* The light below 0 of all leaves, W. */
-static double negative_light(const struct forest *forest)
+/* Collective. The light below 0 of all leaves, W. */
+static double negative_light(const struct conjugate *cg, const struct forest *forest)
 {
-    double sum = 0.0;
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+    double sum;
+    for (int64_t i = 0; i < cg->count; i++) {
+        cg->terms[i] = 0.0;
         for (int c = 0; c < BANDS; c++)
-            sum += forest_area(forest, leaf) *
-                   fmax(0.0, -forest->radiosity[leaf].band[c]);
+            cg->terms[i] += forest_area(forest, cg->leaves[i]) *
+                            fmax(0.0, -forest->radiosity[cg->leaves[i]].band[c]);
+    }
+    total_up(&cg->totals, cg->terms, cg->count, 1, &sum);
     return sum;
 }
 
@@ -73,7 +82,8 @@ struct vote descent_vote(struct solver *solver, const struct ballot *sum)
     vote.again = more && !vote.unfinished;
     if (vote.again)
         conjugate_step(cg, forest);
-    else if (negative_light(forest) > (remaining + 1.0 / NEGATIVE) * light)
+    else if (negative_light(cg, forest) > (remaining + 1.0 / NEGATIVE) * light)
         vote.diverged = true;
+    solver_renew_all(solver); /* step 7, of the light that the vote leaves */
     return vote;
 }

@@ -63,6 +63,7 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     beyond_attach(solver);
+    solver_complete(solver);
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){
         .root_count = forest->root_count,

@@ -12,9 +12,9 @@
  *     B += step p,      r -= step K p,          step = <r, K p> / <K p, K p>.
  *
  * The next iteration, if of B + r, tells K r: G(B + r) - (B + r) = r - K r. So ranks
- * exchange nothing but the light, as in the paper's method. Sums run over all leaves in
- * one order, the same on all ranks. Bands are three systems side by side; surfaces
- * reflecting nothing have no residual.
+ * exchange the light, as in the paper's method, and sums; each has the vectors of its own
+ * leaves. Bands are three systems side by side; surfaces reflecting nothing have no
+ * residual.
  *
  * The error e of B solves K e = r, so it is r + rho d F r + (rho d F)^2 r + ... Let |x|
  * be the sum of w |x| over leaves and bands. A F being symmetric, |rho d F x| is at most
@@ -23,8 +23,7 @@
  * the largest rho d times that.
  *
  * Jacobi's method, the paper's, gains a factor rho per iteration; this one needs some ten
- * iterations for any rho. Rejected: conjugate gradients of each rank's own leaves, with
- * sums over ranks. These have to be of integers, in units from bounds on all factors. */
+ * iterations for any rho. */
 #include "rad/beyond/conjugate.h"
 
 #include <math.h>
@@ -40,6 +39,7 @@ void conjugate_free(struct conjugate *cg)
     alloc_free(cg->residual);
     alloc_free(cg->direction);
     alloc_free(cg->image);
+    alloc_free(cg->terms);
     *cg = (struct conjugate){0};
 }
 
@@ -63,7 +63,7 @@ static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
     double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
     double reflected = largest * cap_of(largest, row);
     forest->caps[leaf] = cap_of(largest, row);
-    if (!(largest > 0.0 && forest_area(forest, leaf) > 0.0))
+    if (!(largest > 0.0))
         return;
     cg->growth = fmax(cg->growth, row * reflected);
     cg->share = fmax(cg->share, reflected);
@@ -79,23 +79,31 @@ static struct rgb weight_of(const struct forest *forest, int32_t leaf)
     return w;
 }
 
-void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows)
+void conjugate_begin(struct conjugate *cg, struct forest *forest, const bool *own,
+                     struct flux_unit unit, struct totals totals)
 {
     conjugate_free(cg);
     alloc_free(forest->caps);
     forest->caps = alloc_array((size_t)forest->count, sizeof *forest->caps);
-    cg->leaves = forest_order(forest);
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = cg->leaves[i];
-        if (patch_is_leaf(&forest->patches[p]))
-            add_leaf(cg, forest, p, rows[p].band[0]);
+    cg->totals = totals;
+    cg->leaves = alloc_array((size_t)forest->count, sizeof *cg->leaves);
+    for (int32_t p = 0; p < forest->count; p++) {
+        int32_t root = (int32_t)forest->patches[p].id.root;
+        if (own[root] && patch_is_leaf(&forest->patches[p]) &&
+            scene_root_area(forest->scene, root) > 0.0)
+            add_leaf(cg, forest, p, leaf_irradiance(forest, p, unit).band[0]);
     }
+    double most[2] = {cg->growth, cg->share};
+    totals.largest(totals.context, most, 2);
+    cg->growth = most[0];
+    cg->share = most[1];
     size_t count = (size_t)cg->count;
     cg->weight = alloc_array(count, sizeof *cg->weight);
     cg->radiosity = alloc_array(count, sizeof *cg->radiosity);
     cg->residual = alloc_array(count, sizeof *cg->residual);
     cg->direction = alloc_array(count, sizeof *cg->direction);
     cg->image = alloc_array(count, sizeof *cg->image);
+    cg->terms = alloc_array(2 * BANDS * count, sizeof *cg->terms);
     for (int64_t i = 0; i < cg->count; i++) {
         cg->weight[i] = weight_of(forest, cg->leaves[i]);
         cg->radiosity[i] = forest->radiosity[cg->leaves[i]];
@@ -113,58 +121,69 @@ static double change(const struct conjugate *cg, const struct forest *forest, in
 double conjugate_missing(const struct conjugate *cg, const struct forest *forest,
                          const struct spaces *spaces)
 {
-    double sum = 0.0;
+    double sum;
     for (int64_t i = 0; i < cg->count; i++) {
         uint32_t root = forest->patches[cg->leaves[i]].id.root;
         double dimness = spaces ? space_dimness(spaces, root) : 1.0;
+        cg->terms[i] = 0.0;
         for (int c = 0; c < BANDS; c++)
-            sum += dimness * (cg->weight[i].band[c] * fabs(change(cg, forest, i, c)));
+            cg->terms[i] +=
+                dimness * (cg->weight[i].band[c] * fabs(change(cg, forest, i, c)));
     }
+    total_up(&cg->totals, cg->terms, cg->count, 1, &sum);
     return cg->share * cg->growth / (1.0 - cg->growth) * sum;
 }
 
-/* <x, K p> / <K p, K p>, where x is r, or K r if `image`; 0 if K p is 0, as of a solved
- * system. */
-static double quotient(const struct conjugate *cg, const struct forest *forest, int c,
-                       bool image)
+/* <x, K p> / <K p, K p> of each band, where x is r, or K r if `image`; 0 if K p is 0, as
+ * of a solved system. */
+static struct rgb quotients(const struct conjugate *cg, const struct forest *forest,
+                            bool image)
 {
-    double along = 0.0, square = 0.0;
-    for (int64_t i = 0; i < cg->count; i++) {
-        double w = cg->weight[i].band[c], kp = cg->image[i].band[c];
-        double x = cg->residual[i].band[c] - (image ? change(cg, forest, i, c) : 0.0);
-        along += w * (x * kp);
-        square += w * (kp * kp);
-    }
-    return square > 0.0 ? along / square : 0.0;
+    double sums[2 * BANDS];
+    struct rgb quotients = {{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < cg->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            double w = cg->weight[i].band[c], kp = cg->image[i].band[c];
+            double x = cg->residual[i].band[c] - (image ? change(cg, forest, i, c) : 0.0);
+            cg->terms[2 * (BANDS * i + c)] = w * (x * kp);
+            cg->terms[2 * (BANDS * i + c) + 1] = w * (kp * kp);
+        }
+    total_up(&cg->totals, cg->terms, cg->count, 2 * BANDS, sums);
+    for (int c = 0; c < BANDS; c++)
+        if (sums[2 * c + 1] > 0.0)
+            quotients.band[c] = sums[2 * c] / sums[2 * c + 1];
+    return quotients;
 }
 
 /* p = r + turn p, K p = K r + turn K p. */
-static void turn(struct conjugate *cg, const struct forest *forest, int c)
+static void turn(struct conjugate *cg, const struct forest *forest)
 {
-    double factor = -quotient(cg, forest, c, true);
-    for (int64_t i = 0; i < cg->count; i++) {
-        double *p = &cg->direction[i].band[c], *image = &cg->image[i].band[c];
-        double r = cg->residual[i].band[c];
-        *p = r + factor * *p;
-        *image = r - change(cg, forest, i, c) + factor * *image;
-    }
+    struct rgb minus = quotients(cg, forest, true);
+    for (int64_t i = 0; i < cg->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            double *p = &cg->direction[i].band[c], *image = &cg->image[i].band[c];
+            double r = cg->residual[i].band[c];
+            *p = r - minus.band[c] * *p;
+            *image = r - change(cg, forest, i, c) - minus.band[c] * *image;
+        }
 }
 
 /* B += step p, r -= step K p. */
-static void advance(struct conjugate *cg, const struct forest *forest, int c)
+static void advance(struct conjugate *cg, const struct forest *forest)
 {
-    double step = quotient(cg, forest, c, false);
-    for (int64_t i = 0; i < cg->count; i++) {
-        cg->radiosity[i].band[c] += step * cg->direction[i].band[c];
-        cg->residual[i].band[c] -= step * cg->image[i].band[c];
-    }
+    struct rgb step = quotients(cg, forest, false);
+    for (int64_t i = 0; i < cg->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            cg->radiosity[i].band[c] += step.band[c] * cg->direction[i].band[c];
+            cg->residual[i].band[c] -= step.band[c] * cg->image[i].band[c];
+        }
 }
 
 void conjugate_step(struct conjugate *cg, struct forest *forest)
 {
-    for (int c = 0; c < BANDS && cg->begun; c++) {
-        turn(cg, forest, c);
-        advance(cg, forest, c);
+    if (cg->begun) {
+        turn(cg, forest);
+        advance(cg, forest);
     }
     for (int64_t i = 0; i < cg->count; i++)
         for (int c = 0; c < BANDS; c++) {
@@ -174,5 +193,4 @@ void conjugate_step(struct conjugate *cg, struct forest *forest)
             *b = cg->radiosity[i].band[c] + cg->residual[i].band[c];
         }
     cg->begun = true;
-    forest_average(forest);
 }

@@ -6,7 +6,7 @@
  * or all but grow, from bounce to bounce has its irradiance multiplied by a factor below
  * 1, its cap.
  *
- * Local: all ranks know the light of all leaves, and change it alike. */
+ * Collective: each rank changes the light of its own leaves, and sums go over all. */
 #ifndef RAD_BEYOND_CONJUGATE_H
 #define RAD_BEYOND_CONJUGATE_H
 
@@ -14,17 +14,21 @@
 #include <stdint.h>
 
 #include "rad/beyond/spaces.h"
+#include "rad/beyond/total.h"
+#include "rad/flux.h"
 #include "rad/patch.h"
 
 struct conjugate {
-    int32_t *leaves;       /* [count] reflecting ones, as in forest_order() */
+    int32_t *leaves;       /* [count] reflecting ones of this rank */
     struct rgb *weight;    /* w, square scene units; [count], like the others leaf by
                               leaf */
     struct rgb *radiosity; /* B, W/m^2 */
     struct rgb *residual;  /* r = G(B) - B */
     struct rgb *direction; /* p */
     struct rgb *image;     /* K p */
+    double *terms;         /* [2 * BANDS * count] room for those of sums */
     int64_t count;
+    struct totals totals;
     double growth;         /* largest cap times row sum times reflectance, below 1 */
     double share;          /* largest cap times reflectance */
     bool begun;            /* r is known */
@@ -32,9 +36,11 @@ struct conjugate {
 
 void conjugate_free(struct conjugate *cg);
 
-/* Chooses the caps of the forest, and begins with its radiosities, which the next
- * iteration is of. `rows`: [forest->count] in the first band the row sum of each leaf. */
-void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows);
+/* Chooses the caps of the leaves of own roots, own[root], and begins with the radiosities
+ * of the forest, which the next iteration is of. Pre: the flux of the forest, in the
+ * unit, is that of B = 1 in the first band, so that irradiances are row sums. */
+void conjugate_begin(struct conjugate *cg, struct forest *forest, const bool *own,
+                     struct flux_unit unit, struct totals totals);
 
 /* A bound on the light missing in the radiosities after an iteration, W in square scene
  * units; that of a dim space counts as often as the brightest has more light. `spaces`:
@@ -42,7 +48,7 @@ void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct r
 double conjugate_missing(const struct conjugate *cg, const struct forest *forest,
                          const struct spaces *spaces);
 
-/* After an iteration: sets all radiosities for the next one. */
+/* After an iteration: sets the radiosities of own leaves for the next one. */
 void conjugate_step(struct conjugate *cg, struct forest *forest);
 
 #endif

@@ -174,13 +174,15 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
     static double a[LEAVES_MAX][LEAVES_MAX], h[LEAVES_MAX];
     const struct solver *solver = problem->solver;
     const struct forest *forest = solver->model.forest;
-    double worst = 0.0, largest = 0.0;
+    double worst = 0.0, largest = 0.0, caps[LEAVES_MAX];
+    for (int i = 0; i < problem->count; i++) /* each home chooses those of its leaves */
+        caps[i] = comm_largest(problem->comm, forest->caps[problem->leaves[i]]);
     for (int c = 0; c < BANDS; c++) {
         for (int i = 0; i < problem->count; i++) {
             h[i] = 0.0;
             for (int j = 0; j < problem->count; j++) {
                 const struct material *m = forest_material(forest, problem->leaves[j]);
-                double factor = f[i][j] * forest->caps[problem->leaves[i]];
+                double factor = f[i][j] * caps[i];
                 a[i][j] = (i == j ? 1.0 : 0.0) - factor * m->reflectance.band[c];
                 h[i] += factor * m->emission.band[c];
             }

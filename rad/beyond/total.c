@@ -1,0 +1,46 @@
+/* Sums in fixed point. Ranks agree on the largest term of each column, and so on a unit
+ * in which no sum can overflow; then integers are added up (rad/flux.h says why). */
+#include "rad/beyond/total.h"
+
+#include "geom/vec.h"
+#include "rad/flux.h"
+
+static void largest_alone(void *context, double *numbers, int64_t count)
+{
+    (void)context;
+    (void)numbers;
+    (void)count;
+}
+
+static void add_alone(void *context, int64_t *numbers, int64_t count)
+{
+    (void)context;
+    (void)numbers;
+    (void)count;
+}
+
+struct totals totals_alone(int64_t terms)
+{
+    return (struct totals){largest_alone, add_alone, NULL, terms};
+}
+
+void total_up(const struct totals *totals, const double *terms, int64_t count,
+              int columns, double *sums)
+{
+    double most[2 * BANDS] = {0.0};
+    int64_t parts[2 * BANDS] = {0};
+    struct flux_unit units[2 * BANDS];
+    for (int64_t i = 0; i < count; i++)
+        for (int k = 0; k < columns; k++)
+            most[k] = real_max(most[k], fabs(terms[columns * i + k]));
+    totals->largest(totals->context, most, columns);
+    for (int k = 0; k < columns; k++)
+        units[k] = flux_unit_for((double)totals->terms * most[k]);
+    for (int64_t i = 0; i < count; i++)
+        for (int k = 0; k < columns; k++)
+            parts[k] =
+                flux_add(parts[k], flux_from_watts(units[k], terms[columns * i + k]));
+    totals->add(totals->context, parts, columns);
+    for (int k = 0; k < columns; k++)
+        sums[k] = flux_to_watts(units[k], parts[k]);
+}
