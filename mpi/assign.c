@@ -172,6 +172,18 @@ void solver_settle_links(struct solver *solver)
     solver->account.seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }
 
+void homes_renew(struct solver *solver)
+{
+    struct homes *homes = &solver->homes;
+    const struct forest *forest = solver->model.forest;
+    for (; homes->listed < forest->count; homes->listed++) {
+        if (!homes->own[forest->patches[homes->listed].id.root])
+            continue;
+        RESERVE(homes->patches, &homes->capacity, homes->count + 1);
+        homes->patches[homes->count++] = (int32_t)homes->listed;
+    }
+}
+
 void solver_assign_roots(struct solver *solver)
 {
     double start = comm_seconds();

@@ -17,11 +17,11 @@
 
 double solver_largest(const struct solver *solver, const struct rgb *vector)
 {
-    const struct forest *forest = solver->model.forest;
+    const struct homes *homes = &solver->homes;
     double largest = 1e-250;
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS && solver->homes.own[forest->patches[p].id.root]; c++)
-            largest = fmax(largest, fabs(vector[p].band[c]));
+    for (int64_t i = 0; i < homes->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            largest = fmax(largest, fabs(vector[homes->patches[i]].band[c]));
     return comm_largest(solver->comm, largest);
 }
 
@@ -66,11 +66,19 @@ static void bring_home(struct solver *solver)
     account->seconds[PHASE_GATHER] += comm_seconds() - start;
 }
 
+static void clear_flux(struct solver *solver, const int32_t *patches, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++) {
+        struct patch *patch = &solver->model.forest->patches[patches[i]];
+        memset(patch->flux, 0, sizeof patch->flux);
+    }
+}
+
 void solver_carry(struct solver *solver, const struct rgb *vector)
 {
-    struct forest *forest = solver->model.forest;
-    for (int64_t p = 0; p < forest->count; p++)
-        memset(forest->patches[p].flux, 0, sizeof forest->patches->flux);
+    homes_renew(solver);
+    clear_flux(solver, solver->homes.patches, solver->homes.count);
+    clear_flux(solver, solver->routes.proxies.patches, solver->routes.proxies.count);
     solver->steps.transfer(solver, vector);
     bring_home(solver);
     if (solver->steps.collect)

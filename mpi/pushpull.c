@@ -5,17 +5,19 @@
 
 static int64_t own_new_patches(const struct solver *solver)
 {
-    const struct forest *forest = solver->model.forest;
+    const struct homes *homes = &solver->homes;
     int64_t count = 0;
-    for (int64_t p = solver->turn.first_new; p < forest->count; p++)
-        count += solver->homes.own[forest->patches[p].id.root];
+    while (count < homes->count &&
+           homes->patches[homes->count - 1 - count] >= solver->turn.first_new)
+        count++;
     return count;
 }
 
 void solver_push_pull_jacobi(struct solver *solver)
 {
     struct push_pull_sums sums =
-        push_pull(&solver->model, solver->flux, solver->homes.own);
+        push_pull(&solver->model, solver->flux, solver->homes.patches,
+                  solver->homes.count);
     solver->ballot = (struct ballot){.light = sums.light,
                                      .absorbed = sums.absorbed,
                                      .change = sums.change,

@@ -153,13 +153,14 @@ enum { ALWAYS = INT32_MAX };
 static bool is_new(struct solver *solver, struct routes *routes, int32_t p, int32_t mark)
 {
     const struct forest *forest = solver->model.forest;
-    int64_t before = routes->capacity;
     if (solver->homes.own[forest->patches[p].id.root])
         return false;
-    RESERVE(routes->known, &routes->capacity, forest->count);
-    if (before < routes->capacity)
+    if (routes->capacity < forest->count) {
+        int64_t before = routes->capacity;
+        RESERVE(routes->known, &routes->capacity, forest->count);
         memset(routes->known + before, 0,
                (size_t)(routes->capacity - before) * sizeof *routes->known);
+    }
     if (routes->known[p] >= mark)
         return false;
     routes->known[p] = mark;
@@ -223,24 +224,33 @@ void solver_learn(struct solver *solver, const struct link_list *list)
 
 /* --- step 7 --- */
 
-/* Collective. All ranks get the radiosities of all leaves, and pull. */
-static void renew_all(struct solver *solver, enum cargo cargo)
+/* Collective. All leaves get proxies on all ranks; B of dark ones stays 0. */
+static void extend_whole(struct solver *solver, enum cargo cargo)
 {
-    struct forest *forest = solver->model.forest;
+    const struct forest *forest = solver->model.forest;
     struct routes *whole = &solver->whole;
-    double start = comm_seconds();
     int32_t *wanted = alloc_array((size_t)forest->count, sizeof *wanted);
     int64_t count = 0;
     for (int32_t p = 0; p < forest->count; p++)
         if (patch_is_leaf(&forest->patches[p]) && is_new(solver, whole, p, ALWAYS) &&
-            !material_is_dark(forest_material(forest, p))) /* B of dark ones stays 0 */
+            !material_is_dark(forest_material(forest, p)))
             wanted[count++] = p;
-    if (whole->proxies.counts)
-        send_values(solver, &whole->originals, &whole->proxies, cargo);
     ask(solver, wanted, count, whole, cargo);
-    forest_average(forest);
-    solver->turn.complete = true;
+    whole->trees = forest->count;
     alloc_free(wanted);
+}
+
+/* Collective. All ranks get the radiosities of all leaves, and pull. */
+static void renew_all(struct solver *solver, enum cargo cargo)
+{
+    struct routes *whole = &solver->whole;
+    double start = comm_seconds();
+    if (whole->trees > 0)
+        send_values(solver, &whole->originals, &whole->proxies, cargo);
+    if (whole->trees < solver->model.forest->count)
+        extend_whole(solver, cargo);
+    forest_average(solver->model.forest);
+    solver->turn.complete = true;
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 

@@ -45,6 +45,7 @@ void solver_destroy(struct solver *solver)
     link_list_free(&solver->links);
     alloc_free(solver->homes.owner);
     alloc_free(solver->homes.own);
+    alloc_free(solver->homes.patches);
     routes_free(&solver->routes);
     routes_free(&solver->whole);
     ledger_free(&solver->account.ledger);

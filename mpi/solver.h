@@ -31,6 +31,9 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot);
 struct homes {
     int *owner; /* [roots] its rank */
     bool *own;  /* [roots] owner[root] == rank */
+    int32_t *patches; /* [count] at home here, in the order of creation */
+    int64_t count, capacity;
+    int64_t listed;   /* patches of the forest gone through so far */
 };
 
 /* Patches that this rank and others have in common, rank by rank. */
@@ -48,6 +51,7 @@ struct routes {
     int32_t *known;         /* [capacity] of patches of other homes: the last pass whose
                                radiosities are known here; see mpi/scatter.c */
     int64_t capacity;
+    int64_t trees;          /* patches there were when all leaves got proxies */
 };
 
 
@@ -146,6 +150,9 @@ bool solver_link_roots(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes with even sums of area, and links settle. */
 void solver_assign_roots(struct solver *solver);
+
+/* Local. Lists new patches at home here. */
+void homes_renew(struct solver *solver);
 
 /* Collective. The links made since the last call go to the homes of their smaller
  * patches, and from those with too many links to others. No links move where there are

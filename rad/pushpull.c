@@ -3,8 +3,8 @@
  * Push: irradiance goes down, H(child) = H(parent) + Phi(child) / A(child). Since only
  * leaves reflect, each leaf adds up its own line of ancestors, at most 16 terms, from the
  * root down. Pull: B goes up; children have equal areas, so a parent's B is their plain
- * mean. A child is always created after its parent, so one loop over the local numbers
- * downwards meets children before parents, and no recursion is needed. */
+ * mean. A child is always created after its parent, so one loop downwards over patches in
+ * the order of creation meets children before parents, and no recursion is needed. */
 #include "rad/pushpull.h"
 
 #include <math.h>
@@ -76,19 +76,18 @@ void forest_average(struct forest *forest)
 }
 
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
-                                const bool *own)
+                                const int32_t *patches, int64_t count)
 {
     struct forest *forest = model->forest;
     struct push_pull_sums sums = {0};
-    for (int64_t p = 0; p < forest->count; p++) {
-        const struct patch *patch = &forest->patches[p];
+    for (int64_t i = 0; i < count; i++) {
+        const struct patch *patch = &forest->patches[patches[i]];
         bool has_area = scene_root_area(model->scene, (int32_t)patch->id.root) > 0.0;
-        if (own[patch->id.root] && has_area && patch_is_leaf(patch))
-            update_leaf(model, flux, (int32_t)p, &sums);
+        if (has_area && patch_is_leaf(patch))
+            update_leaf(model, flux, patches[i], &sums);
     }
-    for (int64_t p = forest->count - 1; p >= 0; p--)
-        if (own[forest->patches[p].id.root])
-            patch_average(forest, (int32_t)p, forest->radiosity);
+    for (int64_t i = count - 1; i >= 0; i--)
+        patch_average(forest, patches[i], forest->radiosity);
     return sums;
 }
 

@@ -23,10 +23,10 @@ struct push_pull_sums {
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
                            struct flux_unit unit);
 
-/* Push and pull on the roots with own[root] set: leaves get B = E + rho H, inner patches
- * the mean of their children. `flux`: unit of the flux. */
+/* Push and pull on these patches, whole trees, parents before children: leaves get
+ * B = E + rho H, inner patches the mean of their children. `flux`: unit of the flux. */
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
-                                const bool *own);
+                                const int32_t *patches, int64_t count);
 
 /* The pull alone, of one patch in a vector [forest->count]: an inner patch gets the mean
  * of its children. */

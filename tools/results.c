@@ -212,15 +212,16 @@ static bool show_pictures(struct run *run)
     return good;
 }
 
-/* Collective. */
+/* Collective. Rank 0 alone shades and writes. */
 static bool show_meshes(struct run *run)
 {
     double start = comm_seconds();
     struct irradiance irradiance;
     irradiance_make(run, &irradiance);
-    struct shading *shading = shade_leaves(run, NULL, false);
-    struct rgb *at = irradiance_at_vertices(&irradiance, shading);
-    if (run_goes_on(run) && run->comm.rank == 0)
+    struct shading *shading =
+        run->comm.rank == 0 ? shade_leaves(run, NULL, false) : NULL;
+    struct rgb *at = shading ? irradiance_at_vertices(&irradiance, shading) : NULL;
+    if (run_goes_on(run) && shading)
         write_meshes(run, shading, &irradiance, at);
     alloc_free(at);
     shading_destroy(shading);
