@@ -25,8 +25,8 @@
 #include "mpi/migrate.h"
 #include "rad/oracle.h"
 
-/* Links are dealt anew if a rank has more than so many times the mean. Without this slack
- * 32 ranks have a fifth more proxies. */
+/* Links are dealt anew if a rank has more that carry light than so many times the mean.
+ * Without this slack 32 ranks have a fifth more proxies. */
 static const double UNEVEN = 1.05;
 
 /* --- homes of roots --- */
@@ -95,57 +95,76 @@ void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
 
 /* --- step 3 --- */
 
-/* The patch that a link belongs to. */
-static int32_t smaller_of(const struct forest *forest, const struct link *link)
+int home_of(const struct solver *solver, int32_t node)
 {
-    return p_is_larger(forest, link) ? link->q : link->p;
+    return node_is_cluster(node)
+               ? solver->above.owner[~node]
+               : solver->homes.owner[solver->model.forest->patches[node].id.root];
 }
 
-/* Where the links of each patch go, [patches], to be freed: home. */
+/* The node that a link belongs to: the smaller patch; or the patch and not the cluster,
+ * or of two clusters the later one. */
+static int32_t smaller_of(const struct forest *forest, const struct link *link)
+{
+    bool p_is_patch = !node_is_cluster(link->p), q_is_patch = !node_is_cluster(link->q);
+    if (p_is_patch && q_is_patch)
+        return p_is_larger(forest, link) ? link->q : link->p;
+    if (p_is_patch || q_is_patch)
+        return p_is_patch ? link->p : link->q;
+    return link->p < link->q ? link->p : link->q;
+}
+
+/* Where the links of each node go, clusters, last one first, and patches; to be freed:
+ * home. */
 static int *choose_homes(const struct solver *solver)
 {
-    const struct forest *forest = solver->model.forest;
-    int *to = alloc_array((size_t)forest->count, sizeof *to);
-    for (int64_t p = 0; p < forest->count; p++)
-        to[p] = solver->homes.owner[forest->patches[p].id.root];
+    int64_t clusters = solver->memory.clusters, all = solver->model.forest->count;
+    int *to = alloc_array((size_t)(clusters + all), sizeof *to);
+    for (int64_t node = -clusters; node < all; node++)
+        to[clusters + node] = home_of(solver, (int32_t)node);
     return to;
 }
 
 /* The same for a rank with more links than others, by the plan of LoadBalance: those of
- * patches made early leave, which have many links each. */
+ * clusters, and of patches made early, leave; these have many links each. */
 static int *choose_leaving(const struct solver *solver, const int64_t *loads)
 {
     const struct forest *forest = solver->model.forest;
     int rank = solver->comm->rank;
     struct transfer *plan = alloc_array(2 * (size_t)solver->comm->size, sizeof *plan);
-    int64_t *links = alloc_array((size_t)forest->count, sizeof *links);
-    int *to = alloc_array((size_t)forest->count, sizeof *to);
+    int64_t all = solver->memory.clusters + forest->count;
+    int64_t *links = alloc_array((size_t)all, sizeof *links);
+    int *to = alloc_array((size_t)all, sizeof *to);
     for (int64_t i = 0; i < solver->links.count; i++)
-        links[smaller_of(forest, &solver->links.items[i])]++;
+        links[solver->memory.clusters + smaller_of(forest, &solver->links.items[i])] +=
+            solver->links.items[i].seen > 0;
     int planned = plan_transfers(loads, solver->comm->size, plan);
-    int64_t p = 0, left = 0; /* below 0: the last patch had more links than planned */
+    int64_t k = 0, left = 0; /* below 0: the last node had more links than planned */
     for (int t = 0; t < planned; t++) {
         left += plan[t].from == rank ? plan[t].load : 0;
-        for (; left > 0 && p < forest->count; p++) {
-            to[p] = plan[t].to;
-            left -= links[p];
+        for (; left > 0 && k < all; k++) {
+            to[k] = plan[t].to;
+            left -= links[k];
         }
     }
-    for (; p < forest->count; p++)
-        to[p] = rank;
+    for (; k < all; k++)
+        to[k] = rank;
     alloc_free(links);
     alloc_free(plan);
     return to;
 }
 
-/* Collective. Sends links, from number `first` on, with their patches. Frees `to`. */
+/* Collective. Sends links, from number `first` on, to where those of their nodes go.
+ * Frees `to`. */
 static void send_links(struct solver *solver, int64_t first, int *to)
 {
+    const struct forest *forest = solver->model.forest;
     int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
-    for (int64_t i = 0; i < solver->links.count; i++)
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        int64_t node = smaller_of(forest, &solver->links.items[i]);
         destination[i] =
-            i < first ? solver->comm->rank
-                      : to[smaller_of(solver->model.forest, &solver->links.items[i])];
+            i < first ? solver->comm->rank : to[solver->memory.clusters + node];
+    }
     links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
     alloc_free(to);
@@ -156,10 +175,11 @@ void solver_settle_links(struct solver *solver)
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
     int64_t most = 0, all = 0;
-    if (solver->memory.clusters || comm->size == 1)
+    if (comm->size == 1)
         return;
     send_links(solver, solver->turn.settled, choose_homes(solver));
-    int64_t *loads = comm_gather_each(comm, &solver->links.count, sizeof *loads);
+    link_list_sort(&solver->links);
+    int64_t *loads = comm_gather_each(comm, &solver->links.seen, sizeof *loads);
     for (int r = 0; r < comm->size; r++) {
         all += loads[r];
         most = loads[r] > most ? loads[r] : most;
@@ -184,19 +204,25 @@ void homes_renew(struct solver *solver)
     }
 }
 
-void solver_assign_roots(struct solver *solver)
+void solver_deal_roots(struct solver *solver, int *owner)
 {
-    double start = comm_seconds();
     const struct model *model = &solver->model;
     int32_t roots = model->forest->root_count;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++) /* areas, in parts of 2^-40 of all */
         weights[root] =
             (int64_t)(scene_root_area(model->scene, root) / model->whole_area * 0x1p40);
-    items_deal(weights, roots, solver->comm->size, solver->homes.owner);
+    items_deal(weights, roots, solver->comm->size, owner);
     alloc_free(weights);
-    for (int32_t root = 0; root < roots; root++)
-        solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;
+}
+
+void solver_assign_roots(struct solver *solver)
+{
+    double start = comm_seconds();
+    struct homes *homes = &solver->homes;
+    solver->steps.deal(solver, homes->owner);
+    for (int32_t root = 0; root < solver->model.forest->root_count; root++)
+        homes->own[root] = homes->owner[root] == solver->comm->rank;
     solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
     solver_settle_links(solver);
 }

@@ -51,7 +51,7 @@ int64_t comm_displacements(const struct comm *comm, const int *counts,
 /* Collective. Each rank tells rank r numbers[r]; told[r] is what rank r tells. */
 void comm_tell(const struct comm *comm, const int *numbers, int *told);
 
-/* Collective. Records go to ranks that know how many: counts[0] for rank 0, then
+/* Collective. Records go to ranks with known counts: counts[0] for rank 0, then
  * counts[1] for rank 1, and so on; expected[r] of rank r arrive, in the order of the
  * ranks. Records have `bytes` bytes, without padding. */
 void comm_deliver(const struct comm *comm, const void *records, const int *counts,

@@ -42,22 +42,27 @@ struct wire_flux {
     int64_t band[BANDS];
 };
 
-/* Collective. Own patches get the flux of all their proxies. */
+static int64_t *flux_of(const struct solver *solver, int32_t node)
+{
+    return node_is_cluster(node) ? solver->above.flux + BANDS * (int64_t)~node
+                                 : solver->model.forest->patches[node].flux;
+}
+
+/* Collective. Own nodes get the flux of all their proxies. */
 static void bring_home(struct solver *solver)
 {
     double start = comm_seconds();
-    struct patch *patches = solver->model.forest->patches;
     const struct route *from = &solver->routes.proxies, *to = &solver->routes.originals;
     struct account *account = &solver->account;
     int64_t messages = comm_counts().messages;
     struct wire_flux *out = alloc_array((size_t)from->count, sizeof *out);
     struct wire_flux *in = alloc_array((size_t)to->count, sizeof *in);
     for (int64_t i = 0; i < from->count; i++)
-        memcpy(out[i].band, patches[from->patches[i]].flux, sizeof out->band);
+        memcpy(out[i].band, flux_of(solver, from->nodes[i]), sizeof out->band);
     comm_deliver(solver->comm, out, from->counts, in, to->counts, sizeof *out);
     for (int64_t i = 0; i < to->count; i++)
         for (int c = 0; c < BANDS; c++)
-            patches[to->patches[i]].flux[c] += in[i].band[c];
+            flux_of(solver, to->nodes[i])[c] += in[i].band[c];
     account->bytes[CARGO_FLUX] += from->count * (int64_t)sizeof *out;
     account->copied += from->count + to->count;
     account->messages[CARGO_FLUX] += comm_counts().messages - messages;
@@ -66,19 +71,16 @@ static void bring_home(struct solver *solver)
     account->seconds[PHASE_GATHER] += comm_seconds() - start;
 }
 
-static void clear_flux(struct solver *solver, const int32_t *patches, int64_t count)
-{
-    for (int64_t i = 0; i < count; i++) {
-        struct patch *patch = &solver->model.forest->patches[patches[i]];
-        memset(patch->flux, 0, sizeof patch->flux);
-    }
-}
-
 void solver_carry(struct solver *solver, const struct rgb *vector)
 {
+    struct patch *patches = solver->model.forest->patches;
+    const struct homes *homes = &solver->homes;
+    const struct route *proxies = &solver->routes.proxies;
     homes_renew(solver);
-    clear_flux(solver, solver->homes.patches, solver->homes.count);
-    clear_flux(solver, solver->routes.proxies.patches, solver->routes.proxies.count);
+    for (int64_t i = 0; i < homes->count; i++)
+        memset(patches[homes->patches[i]].flux, 0, sizeof patches->flux);
+    for (int64_t i = 0; i < proxies->count; i++)
+        memset(flux_of(solver, proxies->nodes[i]), 0, sizeof patches->flux);
     solver->steps.transfer(solver, vector);
     bring_home(solver);
     if (solver->steps.collect)

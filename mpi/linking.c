@@ -73,12 +73,12 @@ static bool begin_round(struct solver *solver, int64_t number, int64_t pairs)
 }
 
 /* A pair of roots, by their numbers in a list. */
-struct pair {
+struct pair_at {
     int64_t i, j;
 };
 
 /* Goes `steps` pairs on, through lines of `count` roots. */
-static void step(struct pair *pair, int64_t steps, int64_t count)
+static void step(struct pair_at *pair, int64_t steps, int64_t count)
 {
     pair->j += steps;
     for (; pair->j >= count && pair->i < count; pair->i++)
@@ -91,7 +91,7 @@ static bool link_pairs(struct solver *solver, const int32_t *roots, int64_t coun
 {
     struct model *model = &solver->model;
     int64_t number = solver->comm->rank, pairs = count * (count - 1) / 2, line = -1;
-    struct pair at = {0, 1};
+    struct pair_at at = {0, 1};
     struct facet facet_i;
     step(&at, number, count);
     for (int64_t round = 0; round < pairs; round += ROUND) {

@@ -6,8 +6,7 @@
  *
  * A level begins with one exchange: of loads, the first two steps of LoadBalance, and of
  * counts by which all ranks decide alike whether there is a level, and room for its links
- * (mpi/memory.h). At the end new links settle where light is transferred over them
- * (mpi/assign.c). */
+ * (mpi/memory.h). At the end new links settle (mpi/assign.c). */
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -195,8 +194,10 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
 static void begin_pass(struct solver *solver)
 {
     double start = comm_seconds();
-    if (solver->model.method.prepare)
+    if (solver->model.method.prepare) {
+        solver_complete(solver);
         solver->model.method.prepare(&solver->model);
+    }
     solver->account.seconds[PHASE_PREPARE] += comm_seconds() - start;
     solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     solver->turn.pass++;

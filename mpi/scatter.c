@@ -4,12 +4,12 @@
  * other homes at the ends of its links. The rank names a new one to the home once, and
  * from then on both have the patch in their lists of each other. Step 5 sends flux along
  * the lists, step 7 sends radiosities back, without IDs, counts or searching. A proxy
- * stays one.
+ * stays one. (Clusters, where there are any, are nodes with homes as patches are.)
  *
  * While links are split, a rank gets links whose ends are no proxies there, and children
  * of patches come to have links. Before each level the homes are asked for the
- * radiosities of these, which hold for the pass. A patch made in the pass has that of the
- * patch that was split.
+ * radiosities of these, which hold for the pass. A patch made in the pass has the
+ * radiosity of the patch split for it.
  *
  * Rejected: the radiosities of all leaves to all ranks, but for once at the end, for what
  * looks at the whole solution. */
@@ -23,7 +23,7 @@
 
 static void route_free(struct route *route)
 {
-    alloc_free(route->patches);
+    alloc_free(route->nodes);
     alloc_free(route->counts);
     *route = (struct route){0};
 }
@@ -36,12 +36,12 @@ void routes_free(struct routes *routes)
     *routes = (struct routes){0};
 }
 
-/* Puts the patches of `more` behind those of the same rank. */
+/* Puts the nodes of `more` behind those of the same rank. */
 static void route_extend(struct route *route, const struct route *more, int ranks)
 {
     int64_t count = route->count + more->count;
     int32_t *all = alloc_array((size_t)count, sizeof *all), *to = all;
-    const int32_t *old = route->patches, *new = more->patches;
+    const int32_t *old = route->nodes, *new = more->nodes;
     if (!route->counts)
         route->counts = alloc_array((size_t)ranks, sizeof *route->counts);
     for (int r = 0; r < ranks; r++) {
@@ -51,59 +51,58 @@ static void route_extend(struct route *route, const struct route *more, int rank
             *to++ = *new++;
         route->counts[r] += more->counts[r];
     }
-    alloc_free(route->patches);
-    route->patches = all;
+    alloc_free(route->nodes);
+    route->nodes = all;
     route->count = count;
 }
 
-/* An empty route, with room. */
-static struct route route_create(int ranks, int64_t count)
+static struct rgb *radiosity_of(const struct solver *solver, int32_t node)
 {
-    return (struct route){alloc_array((size_t)count, sizeof(int32_t)),
-                          alloc_array((size_t)ranks, sizeof(int)), count};
+    return node_is_cluster(node) ? &solver->above.radiosity[~node]
+                                 : &solver->model.forest->radiosity[node];
 }
 
-/* These patches, home by home. */
-static struct route route_to_homes(const struct solver *solver, const int32_t *patches,
+/* These nodes, home by home. */
+static struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
                                    int64_t count)
 {
-    const struct patch *all = solver->model.forest->patches;
-    const int *owner = solver->homes.owner;
-    struct route route = route_create(solver->comm->size, count);
-    int *at = alloc_array((size_t)solver->comm->size, sizeof *at);
+    size_t ranks = (size_t)solver->comm->size;
+    struct route route = {.count = count};
+    route.nodes = alloc_array((size_t)count, sizeof *route.nodes);
+    route.counts = alloc_array(ranks, sizeof *route.counts);
+    int *at = alloc_array(ranks, sizeof *at);
     for (int64_t i = 0; i < count; i++)
-        route.counts[owner[all[patches[i]].id.root]]++;
+        route.counts[home_of(solver, nodes[i])]++;
     comm_displacements(solver->comm, route.counts, at);
     for (int64_t i = 0; i < count; i++)
-        route.patches[at[owner[all[patches[i]].id.root]]++] = patches[i];
+        route.nodes[at[home_of(solver, nodes[i])]++] = nodes[i];
     alloc_free(at);
     return route;
 }
 
-/* Collective. The patches at home here that other ranks have in theirs, rank by rank. */
+/* Collective. The nodes at home here that other ranks have in theirs, rank by rank. */
 static struct route route_to_proxies(struct solver *solver, const struct route *asked,
                                      enum cargo cargo)
 {
-    struct forest *forest = solver->model.forest;
-    int ranks = solver->comm->size, *counts = alloc_array((size_t)ranks, sizeof *counts);
-    int64_t all = 0, messages = comm_counts().messages;
-    comm_tell(solver->comm, asked->counts, counts);
-    for (int r = 0; r < ranks; r++)
-        all += counts[r];
-    struct route route = route_create(ranks, all);
+    const struct model *model = &solver->model;
+    size_t ranks = (size_t)solver->comm->size;
+    int64_t messages = comm_counts().messages;
+    struct route route = {.counts = alloc_array(ranks, sizeof *route.counts)};
+    comm_tell(solver->comm, asked->counts, route.counts);
+    for (size_t r = 0; r < ranks; r++)
+        route.count += route.counts[r];
+    route.nodes = alloc_array((size_t)route.count, sizeof *route.nodes);
     struct patch_id *ids = alloc_array((size_t)asked->count, sizeof *ids);
-    struct patch_id *own = alloc_array((size_t)all, sizeof *own);
+    struct patch_id *own = alloc_array((size_t)route.count, sizeof *own);
     for (int64_t i = 0; i < asked->count; i++)
-        ids[i] = forest->patches[asked->patches[i]].id;
-    comm_deliver(solver->comm, ids, asked->counts, own, counts, sizeof *ids);
-    for (int64_t i = 0; i < all; i++)
-        route.patches[i] = forest_reach(forest, own[i]);
-    memcpy(route.counts, counts, (size_t)ranks * sizeof *counts);
-    solver->account.bytes[cargo] += all * (int64_t)sizeof *own;
+        ids[i] = model->method.node_id(model, asked->nodes[i]);
+    comm_deliver(solver->comm, ids, asked->counts, own, route.counts, sizeof *ids);
+    for (int64_t i = 0; i < route.count; i++)
+        route.nodes[i] = model->method.node_reach(model, own[i]);
+    solver->account.bytes[cargo] += route.count * (int64_t)sizeof *own;
     solver->account.messages[cargo] += comm_counts().messages - messages;
     alloc_free(own);
     alloc_free(ids);
-    alloc_free(counts);
     return route;
 }
 
@@ -111,16 +110,15 @@ static struct route route_to_proxies(struct solver *solver, const struct route *
 static void send_values(struct solver *solver, const struct route *originals,
                         const struct route *proxies, enum cargo cargo)
 {
-    struct rgb *radiosity = solver->model.forest->radiosity;
     int64_t messages = comm_counts().messages;
     int64_t sent = originals->count, got = proxies->count;
     struct rgb *out = alloc_array((size_t)sent, sizeof *out);
     struct rgb *in = alloc_array((size_t)got, sizeof *in);
     for (int64_t i = 0; i < sent; i++)
-        out[i] = radiosity[originals->patches[i]];
+        out[i] = *radiosity_of(solver, originals->nodes[i]);
     comm_deliver(solver->comm, out, originals->counts, in, proxies->counts, sizeof *out);
     for (int64_t i = 0; i < got; i++)
-        radiosity[proxies->patches[i]] = in[i];
+        *radiosity_of(solver, proxies->nodes[i]) = in[i];
     solver->account.bytes[cargo] += sent * (int64_t)sizeof *out;
     solver->account.messages[cargo] += comm_counts().messages - messages;
     solver->account.copied += sent + got;
@@ -128,12 +126,12 @@ static void send_values(struct solver *solver, const struct route *originals,
     alloc_free(out);
 }
 
-/* Collective. Gets the radiosities of these patches from their homes, and makes them
+/* Collective. Gets the radiosities of these nodes from their homes. The nodes become
  * proxies, unless `routes` is NULL. */
-static void ask(struct solver *solver, const int32_t *patches, int64_t count,
+static void ask(struct solver *solver, const int32_t *nodes, int64_t count,
                 struct routes *routes, enum cargo cargo)
 {
-    struct route asked = route_to_homes(solver, patches, count);
+    struct route asked = route_to_homes(solver, nodes, count);
     struct route own = route_to_proxies(solver, &asked, cargo);
     send_values(solver, &own, &asked, cargo);
     if (routes) {
@@ -149,21 +147,23 @@ static void ask(struct solver *solver, const int32_t *patches, int64_t count,
 /* Marks in routes->known: a proxy. */
 enum { ALWAYS = INT32_MAX };
 
-/* True of a patch of another home that is not marked so far, or with less; marks it. */
-static bool is_new(struct solver *solver, struct routes *routes, int32_t p, int32_t mark)
+/* True of a node of another home that is not marked so far, or with less; marks it. */
+static bool is_new(struct solver *solver, struct routes *routes, int32_t node,
+                   int32_t mark)
 {
-    const struct forest *forest = solver->model.forest;
-    if (solver->homes.own[forest->patches[p].id.root])
+    int64_t clusters = solver->memory.clusters, before = routes->capacity,
+            all = solver->model.forest->count + clusters;
+    if (home_of(solver, node) == solver->comm->rank)
         return false;
-    if (routes->capacity < forest->count) {
-        int64_t before = routes->capacity;
-        RESERVE(routes->known, &routes->capacity, forest->count);
+    if (before < all) {
+        RESERVE(routes->known, &routes->capacity, all);
         memset(routes->known + before, 0,
                (size_t)(routes->capacity - before) * sizeof *routes->known);
     }
-    if (routes->known[p] >= mark)
+    int32_t *known = &routes->known[clusters + node];
+    if (*known >= mark)
         return false;
-    routes->known[p] = mark;
+    *known = mark;
     return true;
 }
 
@@ -171,9 +171,9 @@ void routes_renew(struct solver *solver)
 {
     const struct model *model = &solver->model;
     struct link_list *links = &solver->links;
-    int32_t *wanted = alloc_array((size_t)model->forest->count, sizeof *wanted);
-    int64_t count = 0;
-    for (int64_t i = 0; i < links->count; i++) {
+    int64_t count = 0, all = model->forest->count + solver->memory.clusters;
+    int32_t *wanted = alloc_array((size_t)all, sizeof *wanted);
+    for (int64_t i = 0; i < links->count && solver->comm->size > 1; i++) {
         int32_t ends[METHOD_ENDS_MAX] = {links->items[i].p, links->items[i].q};
         int number = 2;
         if (model->method.ends)
@@ -222,10 +222,10 @@ void solver_learn(struct solver *solver, const struct link_list *list)
     alloc_free(nodes);
 }
 
-/* --- step 7 --- */
+/* --- all leaves --- */
 
 /* Collective. All leaves get proxies on all ranks; B of dark ones stays 0. */
-static void extend_whole(struct solver *solver, enum cargo cargo)
+static void extend_whole(struct solver *solver)
 {
     const struct forest *forest = solver->model.forest;
     struct routes *whole = &solver->whole;
@@ -235,35 +235,27 @@ static void extend_whole(struct solver *solver, enum cargo cargo)
         if (patch_is_leaf(&forest->patches[p]) && is_new(solver, whole, p, ALWAYS) &&
             !material_is_dark(forest_material(forest, p)))
             wanted[count++] = p;
-    ask(solver, wanted, count, whole, cargo);
+    ask(solver, wanted, count, whole, CARGO_WHOLE);
     whole->trees = forest->count;
     alloc_free(wanted);
 }
 
-/* Collective. All ranks get the radiosities of all leaves, and pull. */
-static void renew_all(struct solver *solver, enum cargo cargo)
+void solver_complete(struct solver *solver)
 {
     struct routes *whole = &solver->whole;
     double start = comm_seconds();
+    if (solver->turn.complete)
+        return;
     if (whole->trees > 0)
-        send_values(solver, &whole->originals, &whole->proxies, cargo);
+        send_values(solver, &whole->originals, &whole->proxies, CARGO_WHOLE);
     if (whole->trees < solver->model.forest->count)
-        extend_whole(solver, cargo);
+        extend_whole(solver);
     forest_average(solver->model.forest);
     solver->turn.complete = true;
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
-void solver_renew_all(struct solver *solver)
-{
-    renew_all(solver, CARGO_LIGHT);
-}
-
-void solver_complete(struct solver *solver)
-{
-    if (!solver->turn.complete)
-        renew_all(solver, CARGO_WHOLE);
-}
+/* --- step 7 --- */
 
 void solver_renew_proxies(struct solver *solver)
 {

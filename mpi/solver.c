@@ -13,6 +13,7 @@
 #include "geom/alloc.h"
 
 const struct steps STEPS_PAPER = {
+    .deal = solver_deal_roots,
     .transfer = solver_transfer,
     .push_pull = solver_push_pull_jacobi,
     .scatter = solver_renew_proxies,

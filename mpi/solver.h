@@ -36,20 +36,30 @@ struct homes {
     int64_t listed;   /* patches of the forest gone through so far */
 };
 
-/* Patches that this rank and others have in common, rank by rank. */
+/* The clusters above the roots, nodes below 0 (rad/patch.h), with the homes that their
+ * roots have; borrowed. All NULL: there are none. */
+struct clusters {
+    int *owner;            /* of each cluster; of one with roots of several homes this
+                              rank, on all ranks */
+    struct rgb *radiosity; /* W/m^2 */
+    int64_t *flux;         /* BANDS for each */
+};
+
+/* Nodes of this rank and others alike, rank by rank: patches, and clusters. */
 struct route {
-    int32_t *patches; /* [count] local numbers */
-    int *counts;      /* [ranks] patches of each rank */
+    int32_t *nodes; /* [count] local numbers */
+    int *counts;    /* [ranks] nodes of each rank */
     int64_t count;
 };
 
-/* The proxies: flux goes from them to the originals, radiosities come back. */
+/* The proxies: flux goes from proxies to originals, radiosities come back. */
 struct routes {
     struct route proxies;   /* of this rank, by their homes */
-    struct route originals; /* patches at home here, by the ranks with proxies of them, in
+    struct route originals; /* nodes at home here, by the ranks with proxies of them, in
                                the order there */
-    int32_t *known;         /* [capacity] of patches of other homes: the last pass whose
-                               radiosities are known here; see mpi/scatter.c */
+    int32_t *known;         /* [capacity] of clusters, last one first, and patches: the
+                               last pass whose radiosity is known here, of a node of
+                               another home; see mpi/scatter.c */
     int64_t capacity;
     int64_t trees;          /* patches there were when all leaves got proxies */
 };
@@ -62,7 +72,7 @@ struct turn {
     int64_t first_new;  /* patches from here on were created in this pass */
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links split by this rank in this pass */
-    int64_t settled;    /* links up to here are where they stay */
+    int64_t settled;    /* links before this number have settled */
     bool complete;      /* all ranks know the radiosities of all patches */
     bool fresh;         /* links have changed since the last transfer */
     int stop;           /* signal of some rank, 0: none; the same on all */
@@ -90,6 +100,7 @@ enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 
 /* The variable parts of steps: the paper's, and phr's own. NULL: an empty part. */
 struct steps {
+    void (*deal)(struct solver *solver, int *owner); /* 3: a home for each root */
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
     /* 5: adds flux over the links living here */
     void (*transfer)(struct solver *solver, const struct rgb *vector);
@@ -111,6 +122,7 @@ struct solver {
     struct model model;        /* scene, octree, forest, criterion; the forest is owned */
     struct link_list links;    /* the links living here ("allInteractions") */
     struct homes homes;
+    struct clusters above;
     struct routes routes;      /* of flux to the homes, and of radiosities back */
     struct routes whole;       /* the same for all leaves on all ranks */
     struct turn turn;
@@ -154,9 +166,11 @@ void solver_assign_roots(struct solver *solver);
 /* Local. Lists new patches at home here. */
 void homes_renew(struct solver *solver);
 
-/* Collective. The links made since the last call go to the homes of their smaller
- * patches, and from those with too many links to others. No links move where there are
- * clusters, which have no home. */
+/* The home of a patch or a cluster. */
+int home_of(const struct solver *solver, int32_t node);
+
+/* Collective. The links made since the last call go to the homes of their smaller nodes,
+ * and from those with too many links to others. */
 void solver_settle_links(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches
@@ -193,17 +207,17 @@ void solver_push_pull(struct solver *solver);
 /* Step 7: proxies get the radiosities of their patches. */
 void solver_scatter(struct solver *solver);
 
-/* Collective. All ranks get the radiosities of all patches, unless they have them. */
+/* Collective. All ranks get the radiosities of all patches, unless turn.complete. */
 void solver_complete(struct solver *solver);
 
 /* Step 8: the verdict on the sum of all ballots. */
 struct vote solver_vote(struct solver *solver);
 
 /* The parts of STEPS_PAPER. */
+void solver_deal_roots(struct solver *solver, int *owner);
 void solver_transfer(struct solver *solver, const struct rgb *vector);
 void solver_push_pull_jacobi(struct solver *solver);
 void solver_renew_proxies(struct solver *solver);
-void solver_renew_all(struct solver *solver);
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum);
 
 /* The vote on these sums, for a bound on the remaining error relative to all light. */

@@ -70,24 +70,18 @@ static void record_iteration(struct solver *solver)
     memcpy(solver->account.recorded, now, sizeof now);
 }
 
-/* Collective. The sum of the ballots of all ranks. */
-static struct ballot count_ballots(struct solver *solver)
+struct vote solver_vote(struct solver *solver)
 {
     const struct comm *comm = solver->comm;
     struct ballot sum = {0}, *each;
     each = comm_gather_each(comm, &solver->ballot, sizeof *each);
     for (int r = 0; r < comm->size; r++)
         ballot_add(&sum, &each[r]);
-    solver->account.bytes[CARGO_LIGHT] += (comm->size - 1) * (int64_t)sizeof *each;
     alloc_free(each);
-    return sum;
-}
-
-struct vote solver_vote(struct solver *solver)
-{
-    solver->ballot = count_ballots(solver);
-    solver->turn.stop = (int)solver->ballot.stop;
-    struct vote vote = solver->steps.vote(solver, &solver->ballot);
+    solver->account.bytes[CARGO_LIGHT] += (comm->size - 1) * (int64_t)sizeof sum;
+    solver->ballot = sum;
+    solver->turn.stop = (int)sum.stop;
+    struct vote vote = solver->steps.vote(solver, &sum);
     record_iteration(solver);
     return vote;
 }

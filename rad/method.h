@@ -19,7 +19,7 @@ struct model;
 /* A split makes no more links than this. */
 enum { METHOD_CHILDREN_MAX = 10 };
 
-/* A link carries light between no more patches than this. */
+/* A link carries light between no more nodes than this. */
 enum { METHOD_ENDS_MAX = 8 };
 
 struct method {
@@ -56,10 +56,10 @@ struct method {
     /* A link, new or not, stays unsplit. NULL: nothing is to be done. */
     void (*keep_link)(struct model *model, struct link *link, bool is_new);
 
-    /* The patches between which a link carries light. Returns their number. NULL: p and q
+    /* The nodes between which a link carries light. Returns their number. NULL: p and q
      * of the link. */
     int (*ends)(const struct model *model, const struct link *link,
-                int32_t patches[METHOD_ENDS_MAX]);
+                int32_t nodes[METHOD_ENDS_MAX]);
 
     /* Transfers light over all links: adds G x of either side to the flux of the other.
      * x is B, or a vector of a solver, [patches], W/m^2. */

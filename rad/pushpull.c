@@ -69,6 +69,12 @@ void patch_average(const struct forest *forest, int32_t p, struct rgb *vector)
                                     (child[2].band[c] + child[3].band[c]));
 }
 
+void patches_average(struct forest *forest, const int32_t *patches, int64_t count)
+{
+    for (int64_t i = count - 1; i >= 0; i--)
+        patch_average(forest, patches[i], forest->radiosity);
+}
+
 void forest_average(struct forest *forest)
 {
     for (int64_t p = forest->count - 1; p >= 0; p--)
@@ -86,8 +92,7 @@ struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux
         if (has_area && patch_is_leaf(patch))
             update_leaf(model, flux, patches[i], &sums);
     }
-    for (int64_t i = count - 1; i >= 0; i--)
-        patch_average(forest, patches[i], forest->radiosity);
+    patches_average(forest, patches, count);
     return sums;
 }
 

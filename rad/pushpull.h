@@ -32,7 +32,8 @@ struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux
  * of its children. */
 void patch_average(const struct forest *forest, int32_t patch, struct rgb *vector);
 
-/* The pull of all radiosities. */
+/* The pull of the radiosities of these patches, parents before children, and of all. */
+void patches_average(struct forest *forest, const int32_t *patches, int64_t count);
 void forest_average(struct forest *forest);
 
 enum { ROW_SUMS_ROOM = 16 };

@@ -69,7 +69,8 @@ enum cargo {
     CARGO_LINKS, /* moving, in steps 3 and 4 */
     CARGO_FLUX,  /* sent in step 5 */
     CARGO_LIGHT, /* got in step 7 and before levels; new patches, at the end of step 4 */
-    CARGO_WHOLE, /* the light of all leaves to all ranks, at the end */
+    CARGO_WHOLE, /* the light of all leaves to all ranks: at the end, and by default
+                    before each pass */
     CARGO_COUNT
 };
 
@@ -147,8 +148,8 @@ struct stats {
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
-    int64_t *proxies; /* [ranks] borrowed: patches of other homes that links of the rank
-                         lead to, or led to before they were split */
+    int64_t *proxies; /* [ranks] borrowed: patches and clusters of other homes between
+                         which links of the rank carry light, or did */
     int64_t bytes_of[CARGO_COUNT]; /* of all ranks */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */

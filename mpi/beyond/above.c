@@ -1,10 +1,17 @@
-/* The tree above the roots on all ranks: built by rank 0, sent like the octree
- * (mpi/broadcast.c). Clusters have no home: each rank gets the sums of their flux. */
+/* The tree above the roots: built by rank 0, and sent like the octree (mpi/broadcast.c).
+ *
+ * The tree is dealt by branches: a cluster and all below are at home on one rank. There
+ * the radiosities of these clusters are averaged, and irradiance is handed down. Other
+ * ranks have proxies of these, at the ends of their links, as of patches (mpi/scatter.c).
+ * The clusters above all branches, some hundred, are on all ranks: the radiosities of the
+ * branches go to all, and the flux of these clusters is summed over all. Averages are the
+ * same sums whoever computes them. */
 #include "mpi/beyond/beyond.h"
 
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "mpi/assign.h"
 
 /* --- building --- */
 
@@ -57,6 +64,7 @@ void above_create(struct solver *solver)
     const struct scene *scene = solver->model.scene;
     struct beyond *beyond = solver->beyond;
     double start = comm_seconds();
+    beyond->branches = alloc_array(1, sizeof *beyond->branches);
     int32_t *met = solver->model.octree ? places_gather(comm, scene, solver->model.octree)
                                         : NULL;
     beyond->spaces = spaces_create(scene, met);
@@ -74,34 +82,218 @@ void above_create(struct solver *solver)
 
 void above_free(struct solver *solver)
 {
+    struct branches *branches = solver->beyond->branches;
+    if (!branches) /* no tree */
+        return;
+    alloc_free(branches->owner);
+    alloc_free(branches->top);
+    alloc_free(branches->own);
+    alloc_free(branches->nodes);
+    alloc_free(branches->counts);
+    alloc_free(branches->at);
+    alloc_free(branches);
     cluster_light_destroy(solver->model.clusters);
     cluster_tree_destroy(solver->beyond->tree);
     spaces_destroy(solver->beyond->spaces);
     node_block_destroy(&solver->beyond->tree_block);
 }
 
+/* --- step 3 --- */
+
+/* The part of the work of a node, of 2: its parts of all area, and of all roots. */
+static double part_of(const struct solver *solver, int32_t node)
+{
+    const struct cluster_tree *tree = solver->beyond->tree;
+    int32_t roots = 1;
+    if (node_is_cluster(node))
+        roots = tree->clusters[~node].end - tree->clusters[~node].first;
+    return cluster_node_area(tree, solver->model.scene, node) / tree->clusters[0].area +
+           (double)roots / tree->root_count;
+}
+
+/* Finds the branches of a node, and the clusters above these: a branch has a quarter of
+ * a rank's part at most, or is a root. Returns their number; `nodes` has room for all. */
+static int32_t find_branches(struct solver *solver, int32_t node, int32_t *nodes)
+{
+    struct branches *branches = solver->beyond->branches;
+    double most = 0.5 / solver->comm->size;
+    if (!node_is_cluster(node) || part_of(solver, node) <= most) {
+        *nodes = node;
+        return 1;
+    }
+    const struct cluster *cluster = &solver->beyond->tree->clusters[~node];
+    int32_t count = 0;
+    branches->top[branches->top_count++] = ~node;
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
+        count += find_branches(solver, cluster->child[k], nodes + count);
+    return count;
+}
+
+/* Sorts branches by their homes. */
+static void sort_branches(struct solver *solver, const int32_t *nodes, const int *homes,
+                          int32_t count)
+{
+    struct branches *branches = solver->beyond->branches;
+    const struct comm *comm = solver->comm;
+    branches->nodes = alloc_array((size_t)count, sizeof *branches->nodes);
+    branches->counts = alloc_array((size_t)comm->size, sizeof *branches->counts);
+    branches->at = alloc_array((size_t)comm->size + 1, sizeof *branches->at);
+    for (int32_t i = 0; i < count; i++)
+        branches->counts[homes[i]]++;
+    comm_displacements(comm, branches->counts, branches->at);
+    for (int32_t i = 0; i < count; i++)
+        branches->nodes[branches->at[homes[i]]++] = nodes[i];
+    branches->at[comm->size] =
+        (int)comm_displacements(comm, branches->counts, branches->at);
+}
+
+/* Hands homes down from branches, and lists the own clusters. Clusters above the branches
+ * are at home on all ranks. */
+static void hand_down(struct solver *solver, int *owner)
+{
+    struct branches *branches = solver->beyond->branches;
+    const struct cluster_tree *tree = solver->beyond->tree;
+    for (int32_t i = 0; i < tree->count; i++) {
+        int home = branches->owner[i];
+        if (home == solver->comm->rank)
+            branches->own[branches->own_count++] = i;
+        for (int k = 0; k < 4 && home >= 0 && tree->clusters[i].child[k] != NODE_NONE;
+             k++) {
+            int32_t node = tree->clusters[i].child[k];
+            *(node_is_cluster(node) ? &branches->owner[~node] : &owner[node]) = home;
+        }
+    }
+    for (int32_t i = 0; i < branches->top_count; i++)
+        branches->owner[branches->top[i]] = solver->comm->rank;
+}
+
+void above_deal(struct solver *solver, int *owner)
+{
+    struct branches *branches = solver->beyond->branches;
+    size_t clusters = (size_t)solver->beyond->tree->count;
+    size_t roots = (size_t)solver->model.forest->root_count;
+    branches->owner = alloc_array(clusters, sizeof *branches->owner);
+    branches->top = alloc_array(clusters, sizeof *branches->top);
+    branches->own = alloc_array(clusters, sizeof *branches->own);
+    int32_t *nodes = alloc_array(roots, sizeof *nodes);
+    int32_t count = find_branches(solver, NODE_TOP, nodes);
+    int64_t *weights = alloc_array((size_t)count, sizeof *weights);
+    int *homes = alloc_array((size_t)count, sizeof *homes);
+    for (int32_t i = 0; i < count; i++)
+        weights[i] = (int64_t)(part_of(solver, nodes[i]) * 0x1p40);
+    items_deal(weights, count, solver->comm->size, homes);
+    for (size_t i = 0; i < clusters; i++)
+        branches->owner[i] = -1;
+    for (int32_t i = 0; i < count; i++)
+        *(node_is_cluster(nodes[i]) ? &branches->owner[~nodes[i]] : &owner[nodes[i]]) =
+            homes[i];
+    hand_down(solver, owner);
+    sort_branches(solver, nodes, homes, count);
+    solver->above = (struct clusters){branches->owner, solver->model.clusters->sent,
+                                   solver->model.clusters->flux};
+    alloc_free(homes);
+    alloc_free(weights);
+    alloc_free(nodes);
+}
+
 /* --- step 5 --- */
+
+static void clear_flux(struct cluster_light *light, const int32_t *clusters,
+                       int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        memset(light->flux + BANDS * (int64_t)clusters[i], 0,
+               BANDS * sizeof *light->flux);
+}
 
 void above_begin(struct solver *solver, const struct rgb *vector)
 {
-    struct cluster_light *clusters = solver->model.clusters;
+    struct cluster_light *light = solver->model.clusters;
+    const struct branches *branches = solver->beyond->branches;
     double start = comm_seconds();
-    cluster_light_average(clusters, solver->model.forest, vector, clusters->sent);
-    memset(clusters->flux, 0,
-           BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
+    if (solver->turn.complete || vector != solver->model.forest->radiosity)
+        cluster_light_average(light, solver->model.forest, vector, light->sent);
+    clear_flux(light, branches->top, branches->top_count);
+    clear_flux(light, branches->own, branches->own_count);
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - start;
+}
+
+/* Collective. Sums the flux of the clusters above the branches. */
+static void add_top(struct solver *solver)
+{
+    struct cluster_light *light = solver->model.clusters;
+    const struct branches *branches = solver->beyond->branches;
+    int64_t count = BANDS * (int64_t)branches->top_count;
+    int64_t *flux = alloc_array((size_t)count, sizeof *flux);
+    for (int64_t i = 0; i < count; i++)
+        flux[i] = light->flux[BANDS * (int64_t)branches->top[i / BANDS] + i % BANDS];
+    comm_add(solver->comm, flux, count);
+    for (int64_t i = 0; i < count; i++)
+        light->flux[BANDS * (int64_t)branches->top[i / BANDS] + i % BANDS] = flux[i];
+    if (solver->comm->size > 1)
+        solver->account.bytes[CARGO_FLUX] += 2 * count * (int64_t)sizeof *flux;
+    alloc_free(flux);
 }
 
 void above_collect(struct solver *solver)
 {
+    struct forest *forest = solver->model.forest;
+    struct cluster_light *light = solver->model.clusters;
+    const struct branches *branches = solver->beyond->branches;
     double start = comm_seconds();
-    struct cluster_light *clusters = solver->model.clusters;
-    int64_t count = BANDS * (int64_t)solver->beyond->tree->count;
-    comm_add(solver->comm, clusters->flux, count);
-    if (solver->comm->size > 1)
-        solver->account.bytes[CARGO_FLUX] += 2 * count * (int64_t)sizeof *clusters->flux;
+    add_top(solver);
     double come = comm_seconds();
-    cluster_light_push(clusters, solver->model.forest, solver->flux);
+    for (int32_t i = 0; i < branches->top_count; i++)
+        cluster_light_push(light, forest, solver->flux, branches->top[i]);
+    for (int32_t i = 0; i < branches->own_count; i++)
+        cluster_light_push(light, forest, solver->flux, branches->own[i]);
     solver->account.seconds[PHASE_GATHER] += come - start;
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - come;
+}
+
+/* --- step 7 --- */
+
+static void average(struct solver *solver, const int32_t *clusters, int32_t count)
+{
+    struct cluster_light *light = solver->model.clusters;
+    const struct forest *forest = solver->model.forest;
+    for (int32_t i = count - 1; i >= 0; i--)
+        light->sent[clusters[i]] = cluster_light_mean(light, forest, clusters[i],
+                                                      forest->radiosity, light->sent);
+}
+
+static struct rgb *radiosity_of(const struct solver *solver, int32_t node)
+{
+    return node_is_cluster(node) ? &solver->model.clusters->sent[~node]
+                                 : &solver->model.forest->radiosity[node];
+}
+
+/* Collective. All ranks get the radiosities of all branches. */
+static void share_branches(struct solver *solver)
+{
+    const struct comm *comm = solver->comm;
+    const struct branches *branches = solver->beyond->branches;
+    int all = branches->at[comm->size], own = branches->counts[comm->rank];
+    struct rgb *values = alloc_array((size_t)all, sizeof *values);
+    for (int i = 0; i < all; i++)
+        values[i] = *radiosity_of(solver, branches->nodes[i]);
+    comm_share(comm, values, branches->counts, branches->at, sizeof *values);
+    for (int i = 0; i < all; i++)
+        *radiosity_of(solver, branches->nodes[i]) = values[i];
+    solver->account.bytes[CARGO_LIGHT] += (int64_t)sizeof *values * (all - own);
+    alloc_free(values);
+}
+
+void above_scatter(struct solver *solver)
+{
+    const struct branches *branches = solver->beyond->branches;
+    double start = comm_seconds();
+    average(solver, branches->own, branches->own_count);
+    double ready = comm_seconds();
+    share_branches(solver);
+    double come = comm_seconds();
+    average(solver, branches->top, branches->top_count);
+    solver->account.seconds[PHASE_SUMS] += ready - start + comm_seconds() - come;
+    solver->account.seconds[PHASE_SCATTER] += come - ready;
+    solver_renew_proxies(solver);
 }

@@ -79,22 +79,25 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
     bool conjugate = criterion->solver == SOLVER_CG;
     bool tree = criterion->linking == LINKING_TREE;
     struct steps *steps = &solver->steps;
-    if (solver->model.method.prepare) /* which reads all radiosities */
-        steps->scatter = solver_renew_all;
     if (!conjugate && !tree)
         return solver;
     beyond_attach(solver);
     if (conjugate) {
-        steps->scatter = NULL; /* after the vote, which changes the light */
         steps->begin = descent_begin;
         steps->vote = descent_vote;
     }
     if (tree) {
         above_create(solver);
+        steps->deal = above_deal;
         steps->transfer = transfer;
+        steps->scatter = above_scatter;
         steps->collect = above_collect;
         if (criterion->final_gather > 0)
             steps->finish = solver_finish;
+    }
+    if (conjugate) {
+        solver->beyond->scatter = steps->scatter;
+        steps->scatter = NULL; /* after the vote, which changes the light */
     }
     return solver;
 }

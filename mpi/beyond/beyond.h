@@ -28,12 +28,25 @@ struct answer {
                                     is no answer */
 };
 
+/* The tree above the roots, dealt: see mpi/beyond/above.c. Clusters by number. */
+struct branches {
+    int *owner;    /* [clusters] see struct clusters */
+    int32_t *top;  /* [top_count] clusters above the branches, parents first */
+    int32_t *own;  /* [own_count] clusters at home here, parents first */
+    int32_t top_count, own_count;
+    int32_t *nodes; /* the branches, clusters and roots, home by home */
+    int *counts;    /* [ranks] branches of each home */
+    int *at;        /* [ranks + 1] where those of each home begin */
+};
+
 /* The state of a rank beyond the paper's. */
 struct beyond {
     struct spaces *spaces;        /* NULL: there is no tree */
     struct cluster_tree *tree;    /* above the roots; NULL: none */
+    struct branches *branches;    /* NULL: none */
     struct node_block tree_block; /* the memory of a tree that is a view */
     struct conjugate *descent;
+    void (*scatter)(struct solver *solver); /* step 7, of the light of the descent */
     struct accuracy accuracy;
     struct answer *answer;
 };
@@ -57,11 +70,17 @@ const struct answer *beyond_answer(const struct solver *solver);
 void above_create(struct solver *solver);
 void above_free(struct solver *solver);
 
-/* Collective. Step 5, before a transfer: computes the radiosity of clusters, and clears
- * their flux; after a transfer: sums the flux of clusters over all ranks and pushes it
- * down to the roots. */
+/* Step 3 with a tree: homes of roots and of clusters. */
+void above_deal(struct solver *solver, int *owner);
+
+/* Step 5, before a transfer: computes the radiosities of clusters, unless the vector is
+ * that of the last step 7, and clears their flux. Collective, after a transfer: sums flux
+ * and pushes it down to the own roots. */
 void above_begin(struct solver *solver, const struct rgb *vector);
 void above_collect(struct solver *solver);
+
+/* Collective. Step 7 with a tree. */
+void above_scatter(struct solver *solver);
 
 /* Steps 5 and 8 with conjugate residuals: when links have changed; and after each
  * iteration. */

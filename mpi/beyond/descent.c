@@ -67,6 +67,15 @@ static double negative_light(const struct conjugate *cg, const struct forest *fo
     return sum;
 }
 
+/* Collective. The light for the next iteration, and step 7 of this one. */
+static void step(struct solver *solver)
+{
+    struct forest *forest = solver->model.forest;
+    conjugate_step(solver->beyond->descent, forest);
+    patches_average(forest, solver->homes.patches, solver->homes.count);
+    solver->beyond->scatter(solver);
+}
+
 struct vote descent_vote(struct solver *solver, const struct ballot *sum)
 {
     const struct criterion *criterion = &solver->model.criterion;
@@ -81,9 +90,8 @@ struct vote descent_vote(struct solver *solver, const struct ballot *sum)
     vote.unfinished = more && solver->turn.iteration >= criterion->max_iterations;
     vote.again = more && !vote.unfinished;
     if (vote.again)
-        conjugate_step(cg, forest);
+        step(solver);
     else if (negative_light(cg, forest) > (remaining + 1.0 / NEGATIVE) * light)
         vote.diverged = true;
-    solver_renew_all(solver); /* step 7, of the light that the vote leaves */
     return vote;
 }

@@ -1,5 +1,5 @@
 /* The light of clusters: mean radiosity, the flux brought by links, and the irradiance
- * handed down. All ranks know the radiosities of all clusters. */
+ * handed down. */
 #ifndef RAD_BEYOND_CLUSTER_LIGHT_H
 #define RAD_BEYOND_CLUSTER_LIGHT_H
 
@@ -21,12 +21,20 @@ void cluster_light_destroy(struct cluster_light *light);
 /* Frees all but tree and radiosity. */
 void cluster_light_free_vectors(struct cluster_light *light);
 
-/* The pull: means of the children, from the roots up, of a vector [patches]. */
+/* The pull of cluster i: the mean of its children, in vectors over patches and over
+ * clusters. */
+struct rgb cluster_light_mean(const struct cluster_light *light,
+                              const struct forest *forest, int32_t i,
+                              const struct rgb *of_patches,
+                              const struct rgb *of_clusters);
+
+/* The pull of all clusters, from the roots up. */
 void cluster_light_average(const struct cluster_light *light, const struct forest *forest,
                            const struct rgb *of_patches, struct rgb *of_clusters);
 
-/* The push: forest->above of a root is the irradiance of all clusters above it. */
+/* The push of cluster i, after its parent's: forest->above of a root is the irradiance of
+ * all clusters above. */
 void cluster_light_push(struct cluster_light *light, struct forest *forest,
-                        struct flux_unit unit);
+                        struct flux_unit unit, int32_t i);
 
 #endif

@@ -38,7 +38,7 @@ void conjugate_free(struct conjugate *cg);
 
 /* Chooses the caps of the leaves of own roots, own[root], and begins with the radiosities
  * of the forest, which the next iteration is of. Pre: the flux of the forest, in the
- * unit, is that of B = 1 in the first band, so that irradiances are row sums. */
+ * unit, is of B = 1 in the first band: irradiances are row sums. */
 void conjugate_begin(struct conjugate *cg, struct forest *forest, const bool *own,
                      struct flux_unit unit, struct totals totals);
 

@@ -219,15 +219,14 @@ static inline void give(const struct model *model, const struct shares *shares,
 }
 
 int node_link_ends(const struct model *model, const struct link *link,
-                   int32_t patches[METHOD_ENDS_MAX])
+                   int32_t nodes[METHOD_ENDS_MAX])
 {
     struct shares sides[2] = {shares_of(model, link->p, link->parts_p),
                               shares_of(model, link->q, link->parts_q)};
     int count = 0;
     for (int side = 0; side < 2; side++)
         for (int k = 0; k < sides[side].count; k++)
-            if (!node_is_cluster(sides[side].node[k]))
-                patches[count++] = sides[side].node[k];
+            nodes[count++] = sides[side].node[k];
     return count;
 }
 

@@ -24,9 +24,9 @@ int node_link_split(struct model *model, const struct link *link, int32_t node,
  * points, without the bias of the decision to accept the link. */
 void node_link_keep(struct model *model, struct link *link, bool is_new);
 
-/* The patches between which a link carries light: see struct method. */
+/* The nodes between which a link carries light: see struct method. */
 int node_link_ends(const struct model *model, const struct link *link,
-                   int32_t patches[METHOD_ENDS_MAX]);
+                   int32_t nodes[METHOD_ENDS_MAX]);
 
 /* As links_transfer(); of clusters goes model->clusters->sent. */
 void node_links_transfer(const struct link_list *list, const struct model *model,

@@ -28,7 +28,8 @@ void total_up(const struct totals *totals, const double *terms, int64_t count,
               int columns, double *sums)
 {
     double most[2 * BANDS] = {0.0};
-    int64_t parts[2 * BANDS] = {0};
+    uint64_t sums_of[2 * BANDS] = {0}; /* of terms that are no numbers, any number */
+    int64_t parts[2 * BANDS];
     struct flux_unit units[2 * BANDS];
     for (int64_t i = 0; i < count; i++)
         for (int k = 0; k < columns; k++)
@@ -38,8 +39,9 @@ void total_up(const struct totals *totals, const double *terms, int64_t count,
         units[k] = flux_unit_for((double)totals->terms * most[k]);
     for (int64_t i = 0; i < count; i++)
         for (int k = 0; k < columns; k++)
-            parts[k] =
-                flux_add(parts[k], flux_from_watts(units[k], terms[columns * i + k]));
+            sums_of[k] += (uint64_t)flux_from_watts(units[k], terms[columns * i + k]);
+    for (int k = 0; k < columns; k++)
+        parts[k] = (int64_t)sums_of[k];
     totals->add(totals->context, parts, columns);
     for (int k = 0; k < columns; k++)
         sums[k] = flux_to_watts(units[k], parts[k]);
