@@ -50,9 +50,8 @@ static inline struct criterion criterion_best(double epsilon, int max_level,
     return criterion;
 }
 
-/* Collective. Solves over the links there are, without refinement; all ranks get all
- * light. */
-static inline struct vote solve_links(struct solver *solver)
+/* Collective. Solves over the links there are, without refinement. */
+static inline struct vote iterate_links(struct solver *solver)
 {
     struct vote vote;
     do {
@@ -61,6 +60,13 @@ static inline struct vote solve_links(struct solver *solver)
         solver_scatter(solver);
         vote = solver_vote(solver);
     } while (vote.again);
+    return vote;
+}
+
+/* Collective. The same, and all ranks get all light. */
+static inline struct vote solve_links(struct solver *solver)
+{
+    struct vote vote = iterate_links(solver);
     solver_complete(solver);
     return vote;
 }

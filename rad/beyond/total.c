@@ -5,25 +5,6 @@
 #include "geom/vec.h"
 #include "rad/flux.h"
 
-static void largest_alone(void *context, double *numbers, int64_t count)
-{
-    (void)context;
-    (void)numbers;
-    (void)count;
-}
-
-static void add_alone(void *context, int64_t *numbers, int64_t count)
-{
-    (void)context;
-    (void)numbers;
-    (void)count;
-}
-
-struct totals totals_alone(int64_t terms)
-{
-    return (struct totals){largest_alone, add_alone, NULL, terms};
-}
-
 void total_up(const struct totals *totals, const double *terms, int64_t count,
               int columns, double *sums)
 {

@@ -13,9 +13,6 @@ struct totals {
     int64_t terms; /* of all ranks in a sum, at most */
 };
 
-/* One rank, with so many terms. */
-struct totals totals_alone(int64_t terms);
-
 /* Collective. sums[k] = sum over i of terms[columns i + k], over all ranks; i < count.
  * The error of a sum is at most 2^-62 times the square of totals->terms, times the
  * largest term. Pre: columns <= 2 BANDS. */

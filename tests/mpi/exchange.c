@@ -246,6 +246,80 @@ static bool trees_agree(const struct solver *solver)
     return on_all(solver->comm, own == first);
 }
 
+/* Whether both patches of each link here have the light of a solver with all light. */
+static bool ends_are_lit(const struct solver *solver, const struct solver *whole)
+{
+    const struct forest *here = solver->model.forest;
+    struct forest *there = whole->model.forest;
+    bool lit = true;
+    for (int64_t i = 0; i < 2 * solver->links.count; i++) {
+        const struct link *link = &solver->links.items[i / 2];
+        int32_t p = i % 2 ? link->p : link->q;
+        int32_t same = forest_reach(there, here->patches[p].id);
+        lit = lit && memcmp(&here->radiosity[p], &there->radiosity[same],
+                            sizeof *here->radiosity) == 0;
+    }
+    return on_all(solver->comm, lit);
+}
+
+/* Whether each link here is at home, with the smaller of its patches. */
+static bool links_are_home(const struct solver *solver)
+{
+    const struct forest *forest = solver->model.forest;
+    bool home = true;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        int32_t p = solver->links.items[i].p, q = solver->links.items[i].q;
+        double area = forest_area(forest, p) - forest_area(forest, q);
+        bool of_p = area != 0.0 ? area < 0.0
+                                : id_compare(forest->patches[p].id,
+                                             forest->patches[q].id) > 0;
+        home = home && home_of(solver, of_p ? p : q) == solver->comm->rank;
+    }
+    return on_all(solver->comm, home);
+}
+
+/* A cube in the paper's way, in three passes: links settle, and step 7 brings light to
+ * proxies alone. */
+static void test_proxies(const struct comm *comm, const struct comm *self,
+                         enum balance balance)
+{
+    struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
+    criterion.balance = balance;
+    struct scene *cube = cube_create();
+    for (int face = 0; face < 6; face++)
+        cube->materials[face] =
+            (struct material){{{0.5, 0.5, 0.2}}, {{face == 1, 0, face == 2}}};
+    struct octree *octree = octree_of(cube);
+    struct solver *solver = beyond_create(comm, cube, octree, &criterion);
+    struct solver *whole = beyond_create(self, cube, octree, &criterion);
+    bool lit = true, home = true, dark = comm->size == 1;
+    solver_link_roots(solver);
+    solver_assign_roots(solver);
+    solver_link_roots(whole);
+    solver_assign_roots(whole);
+    for (int pass = 0; pass < 3; pass++) {
+        solver_refine(solver);
+        solver_refine(whole);
+        home = home && links_are_home(solver);
+        iterate_links(solver);
+        iterate_links(whole);
+        lit = lit && ends_are_lit(solver, whole);
+        dark = dark || !trees_agree(solver);
+    }
+    solver_complete(solver);
+    if (balance == BALANCE_NONE)
+        report(comm, home, "links settle with their smaller patch");
+    report(comm, lit, "ends of links have the light of one rank alone");
+    report(comm, dark, "and not all other patches");
+    report(comm, trees_agree(solver) && forest_checksum(solver->model.forest) ==
+                     forest_checksum(whole->model.forest),
+           "until the solution is made whole");
+    solver_destroy(solver);
+    solver_destroy(whole);
+    octree_destroy(octree);
+    scene_destroy(cube);
+}
+
 /* A cube, refined twice: right after a refinement all ranks have the same trees, which
  * are those that one rank makes, though the links that split them live on different
  * ranks. */
@@ -312,6 +386,8 @@ int main(int argc, char **argv)
         test_refinement(&comm, &self, &criterion,
                         "the paper's method: several ranks split links");
     }
+    test_proxies(&comm, &self, BALANCE_NONE);
+    test_proxies(&comm, &self, BALANCE_GREEDY);
     criterion = criterion_best(4e-5, 10, 1e-4);
     criterion.balance = BALANCE_DEFAULT;
     test_refinement(&comm, &self, &criterion,
