@@ -7,6 +7,10 @@
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "geom/alloc.h"
 
 /* A leaf gets 2^MOST_DOUBLED times the mean number at most, and 2^-MOST_HALVED at
  * least. */
@@ -23,28 +27,67 @@ static int power_of(double worth)
     return power;
 }
 
+static int shots_of_power(int power, int mean)
+{
+    int shots = power > 0 ? mean << power : mean >> -power;
+    return shots < FEWEST ? FEWEST : shots;
+}
+
 static int shots_of(double worth, int mean)
 {
-    int power = power_of(worth);
-    int shots = power > 0 ? mean << power : mean >> -power;
-    return worth < 0.0 || shots < FEWEST ? FEWEST : shots;
+    return worth < 0.0 ? FEWEST : shots_of_power(power_of(worth), mean);
+}
+
+/* A compare function of qsort(); equal numbers are alike. */
+static int compare_worths(const void *left, const void *right)
+{
+    double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* The number of leaves with less than this power, of sorted worths. */
+static int64_t count_below(const double *sorted, int64_t count, double unit, int power)
+{
+    int64_t low = 0, high = count;
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (power_of(sorted[middle] / unit) < power)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The shots of all leaves with these sorted worths, if `unit` is worth the mean. */
+static int64_t shots_of_all(const double *sorted, int64_t count, double unit, int mean)
+{
+    int64_t sum = 0, below = 0;
+    for (int power = -MOST_HALVED; power <= MOST_DOUBLED; power++) {
+        int64_t so_far = power < MOST_DOUBLED
+                             ? count_below(sorted, count, unit, power + 1) : count;
+        sum += (so_far - below) * shots_of_power(power, mean);
+        below = so_far;
+    }
+    return sum;
 }
 
 void gather_share_shots(const double *worth, int64_t count, int mean, int *shots)
 {
-    double low = 0.0, high = 0.0;
-    int64_t all = 0;
-    for (int64_t k = 0; k < count; k++) {
-        high = fmax(high, worth[k]);
-        all += worth[k] < 0.0 ? FEWEST : mean;
-    }
+    double low = 0.0, high = 0.0, *sorted = alloc_array((size_t)count, sizeof *sorted);
+    int64_t sharing = 0; /* leaves; the others get the fewest */
+    for (int64_t k = 0; k < count; k++)
+        if (!(worth[k] < 0.0))
+            sorted[sharing++] = worth[k];
+    qsort(sorted, (size_t)sharing, sizeof *sorted, compare_worths);
+    if (sharing > 0)
+        high = fmax(0.0, sorted[sharing - 1]);
     for (int step = 0; step < STEPS && high > 0.0; step++) { /* worth of the mean */
         double unit = 0.5 * (low + high);
-        int64_t sum = 0;
-        for (int64_t k = 0; k < count; k++)
-            sum += shots_of(worth[k] / unit, mean);
-        *(sum > all ? &low : &high) = unit;
+        bool more = shots_of_all(sorted, sharing, unit, mean) > sharing * mean;
+        *(more ? &low : &high) = unit;
     }
     for (int64_t k = 0; k < count; k++)
         shots[k] = shots_of(high > 0.0 ? worth[k] / high : 2.0 * worth[k] + 1.0, mean);
+    alloc_free(sorted);
 }
