@@ -15,13 +15,15 @@ int main(void)
             costs[r][i] = r == 0 ? 1 + number % 97 : 1 + number % 13;
             before[r] += costs[r][i];
         }
+    /* Predictions are wrong, those of neighbours alike: of each rank's links every other
+     * hundred takes four times as much. */
     int is_right = 1;
     for (int r = 0; r < RANKS; r++) {
         int destination[LINKS] = {0};
         deal_mine((struct loads){before, RANKS, r}, costs[r], LINKS, destination);
         for (int i = 0; i < LINKS; i++) {
             is_right &= destination[i] >= 0 && destination[i] < RANKS;
-            after[destination[i] & (RANKS - 1)] += costs[r][i];
+            after[destination[i] & (RANKS - 1)] += (i / 100 % 2 ? 4 : 1) * costs[r][i];
         }
     }
     int64_t most = 0, sum = 0;
