@@ -173,7 +173,7 @@ void routes_renew(struct solver *solver)
     struct link_list *links = &solver->links;
     int64_t count = 0, all = model->forest->count + solver->memory.clusters;
     int32_t *wanted = alloc_array((size_t)all, sizeof *wanted);
-    for (int64_t i = 0; i < links->count && solver->comm->size > 1; i++) {
+    for (int64_t i = 0; i < links->seen && solver->comm->size > 1; i++) {
         int32_t ends[METHOD_ENDS_MAX] = {links->items[i].p, links->items[i].q};
         int number = 2;
         if (model->method.ends)

@@ -183,8 +183,8 @@ bool solver_refine(struct solver *solver);
  * of the children of these. */
 void solver_learn(struct solver *solver, const struct link_list *list);
 
-/* Collective. Patches of other homes at new ends of own links become proxies. Pre: all
- * ranks have the same trees. */
+/* Collective. Nodes of other homes at new ends of own links that carry light become
+ * proxies. Pre: links are sorted, and all ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
 
