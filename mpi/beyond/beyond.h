@@ -65,7 +65,7 @@ void beyond_free_vectors(struct solver *solver);
 /* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
 
-/* The tree above the roots, and its light, on all ranks; collective. Builds
+/* The tree above the roots, the same on all ranks; collective. Builds
  * solver->beyond->tree, and the light and the arrays of a tree. */
 void above_create(struct solver *solver);
 void above_free(struct solver *solver);

@@ -1,9 +1,9 @@
 /* Collecting and restoring a run's snapshot.
  *
- * Between passes all ranks have the same trees with the same radiosities. Not kept are
- * the quantities computed anew by every pass: fluxes, directions of conjugate residuals
- * (started afresh by each pass), inner radiosities and ranges, and proofs of open leaves,
- * for which rays are fired again.
+ * A snapshot is taken between passes, of a solution made whole: all ranks have the same
+ * trees with the same radiosities. Not kept are the quantities computed anew by every
+ * pass: fluxes, directions of conjugate residuals (started afresh by each pass), inner
+ * radiosities and ranges, and proofs of open leaves, for which rays are fired again.
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted,
  * merged on rank 0, and given their local numbers back: no copy of them is made, since a
