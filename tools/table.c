@@ -66,7 +66,7 @@ bool table_print_points(struct run *run)
 /* --- by object --- */
 
 /* Sums over the leaves of an object or a material. */
-struct totals {
+struct tally {
     double area;                        /* square input units */
     double emitted, absorbed, reflected; /* W */
     double radiosity, irradiance;       /* W/m^2 or lux, times area */
@@ -74,7 +74,7 @@ struct totals {
     double error;                       /* of a leaf's irradiance, times area */
 };
 
-static void add_leaf(struct totals *totals, const struct run *run,
+static void add_leaf(struct tally *totals, const struct run *run,
                      const struct irradiance *found, int32_t leaf)
 {
     const struct forest *forest = run->solver->model.forest;
@@ -107,7 +107,7 @@ static void write_name(FILE *file, const char *name)
 }
 
 static void write_totals(FILE *file, const char *kind, const char *name,
-                       const struct totals *totals)
+                       const struct tally *totals)
 {
     if (!(totals->area > 0.0))
         return;
@@ -124,8 +124,8 @@ static void write_all(const struct run *run, const struct irradiance *found, FIL
 {
     const struct forest *forest = run->solver->model.forest;
     const struct scene *scene = forest->scene;
-    struct totals *objects = alloc_array((size_t)scene->groups.count, sizeof *objects);
-    struct totals *materials = alloc_array((size_t)scene->material_count,
+    struct tally *objects = alloc_array((size_t)scene->groups.count, sizeof *objects);
+    struct tally *materials = alloc_array((size_t)scene->material_count,
                                          sizeof *materials);
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
