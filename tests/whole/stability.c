@@ -3,10 +3,10 @@
  *
  *     F <= 1, G <= the smaller area      formfactor.c, patch_exchange.c, contour.c
  *     singular shared edges              contour.c, 55-validate.sh
- *     drift of row sums, slivers         whole.c
+ *     drift of row sums, slivers         58-panel.sh
  *     false convergence                  exact.c, conjugate.c
  *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, obj.c, scene.c
- *     covered patches, interpenetration  whole.c
+ *     covered patches, interpenetration  58-panel.sh
  *     scale, offset                      65-invariance.sh
  *     16 levels                          options.c refuses them; 15 here
  *     oscillation, termination           a run of each test converges
