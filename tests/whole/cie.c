@@ -1,8 +1,8 @@
 /* The room tests of CIE 171:2006 that need neither glass nor sky, against closed forms:
  * 5.3 a square area source, 5.6 light reflected by a bright floor, 5.7 the same with a
- * slab in the way, 5.8 interreflection.
+ * slab in the way. (5.8, interreflection, is in tests/panel/table.)
  *
- * In the first three only one plane reflects at a time, so that nothing but the light of
+ * Only one plane reflects at a time, so that nothing but the light of
  * the source arrives there, B = rho E, and E / B_source is the form factor from the point
  * to the visible part of the source: Lambert's closed form, with the polygon cut where
  * the slab covers it. The numbers are those in percent; the CIE's Table 19 for 5.7 is
@@ -115,46 +115,6 @@ static void test_samples(const struct room_case *room)
     solution_free(&s);
 }
 
-/* A cube of 4 m, sides of 4 x 4 squares of 1 m; one of them is a source of 10000 lm. */
-static struct scene *glowing_square(double reflectance)
-{
-    struct soup soup = {0};
-    soup_add_box(&soup, point(0, 0, 0), point(4, 4, 4), 4, true);
-    struct triangle first = soup.items[0], second = soup.items[1];
-    soup.items[0] = soup.items[soup.count - 2];
-    soup.items[1] = soup.items[soup.count - 1];
-    soup.count -= 2;
-    paint(&soup, reflectance, 0.0);
-    soup_add(&soup, first);
-    soup_add(&soup, second);
-    paint(&soup, reflectance, 10000.0);
-    return scene_of_soup(&soup);
-}
-
-/* 5.8: the mean light that arrives after one reflection or more is rho Phi / (96 (1 -
- * rho)), exactly and wherever the source is. From the solution: of all that arrives, (B -
- * E) / rho, the first Phi / 96 comes from the source. All that is sent arrives where the
- * final gather is, so the mean is exact at any epsilon; the limit is the seven digits of
- * the CIE's numbers. */
-static void test_interreflection(double rho, double exact, const char *words)
-{
-    struct solution s = solve_scene(glowing_square(rho), words);
-    double light = 96.0 * mean_radiosity(&s, 0, scene_root_count(s.scene));
-    double indirect = ((light - 10000.0) / rho - 10000.0) / 96.0;
-    double off = fabs(indirect / exact - 1.0);
-    tap_ok(s.vote.converged && off <= 1e-6,
-           "5.8 rho %g, %s: %.6g lx, exact %.10g: off by %.2g (%lld iterations)", rho,
-           words, indirect, exact, off, (long long)s.stats.iterations);
-    solution_free(&s);
-}
-
-/* Of the CIE's column. */
-static const struct {
-    double rho, lux;
-} INTERREFLECTION[] = {
-    {0.05, 5.482456}, {0.4, 69.444444}, {0.7, 243.055556}, {0.9, 937.5},
-    {0.999, 104062.5}};
-
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 
 int main(int argc, char **argv)
@@ -162,12 +122,6 @@ int main(int argc, char **argv)
     comm_start(&world_comm, &argc, &argv);
     for (int i = 0; i < COUNT(CASES); i++)
         test_samples(&CASES[i]);
-    for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
-        double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
-        test_interreflection(rho, exact, "--epsilon 1e-2 --tolerance 1e-8");
-        if (i == 1) /* the default epsilon takes longer */
-            test_interreflection(rho, exact, "--tolerance 1e-4");
-    }
     comm_stop(&world_comm);
     return tap_done();
 }
