@@ -50,20 +50,6 @@ static inline struct solution solve_soup(struct soup *soup, const char *words)
 
 /* --- answers --- */
 
-/* Area times radiosity over area, of the roots first .. first + count - 1. W/m^2, first
- * band. */
-static inline double mean_radiosity(const struct solution *s, int32_t first,
-                                    int32_t count)
-{
-    const struct forest *forest = s->solver->model.forest;
-    double light = 0.0, area = 0.0;
-    for (int32_t root = first; root < first + count; root++) {
-        light += forest_area(forest, root) * forest->radiosity[root].band[0];
-        area += forest_area(forest, root);
-    }
-    return light / area;
-}
-
 /* Smooth shading of the light of the links. */
 static inline struct shading *shade(const struct solution *s)
 {

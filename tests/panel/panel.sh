@@ -37,7 +37,9 @@ built() {
     file=$folder/$name-${order%/*}
     rm -f "$file.view"
     case $1 in
-    room) cp scenes/room.mtl "$folder" && build/room "$2" 1 >"$file.obj" ;;
+    room) cp scenes/room.mtl "$folder" && build/room "$2" 1 >"$file.obj"
+        [ "${3-}" != seen ] || printf '%s\n' "eye 2.4 .37 1.8" "at -.57 7.79 .2" \
+            "up 0 0 1" "fov 70" >"$file.view" ;;
     *)  if [ -f "scenes/$1.obj" ]; then
             cp scenes/*.mtl "$folder" && cp "scenes/$1.obj" "$file.obj"
             [ ! -f "scenes/$1.view" ] || cp "scenes/$1.view" "$file.view"

@@ -186,6 +186,66 @@ around() { # the floor around a lamp that hangs 2 mm above it
     sheet z 0 + -1 -1 2 2 0 0 1 1
 }
 
+foliage() { # forty small black squares between a floor and a lamp as wide
+    paint floor .999 0
+    sheet z 0 + 0 0 1 1
+    paint lamp 0 1
+    sheet z 1 - 0 0 1 1
+    paint leaf 0 0
+    each 0 39 leaf_of_foliage
+}
+leaf_of_foliage() {
+    awk -v k=$k 'function part(i) { return .5 + .5 * sin(1000 * sin(4 * k + i)) }
+        BEGIN { x = part(0); y = part(1); z = .1 + .8 * part(2); t = .1 * part(3)
+                print "quad", x, y, z, x + .06, y, z + t, x + .06, y + .06, z, x,
+                      y + .06, z - t }'
+}
+
+screen() { # four hundred black squares halfway to a wide lamp
+    paint floor .5 0
+    sheet z 0 + -.1 -.1 .1 .1
+    paint lamp 0 1
+    sheet z 1 - -5 -5 5 5
+    paint screen 0 0
+    awk 'BEGIN {
+        for (k = 0; k < 400; k++) {
+            x = k % 20 * .1 - .9975; y = int(k / 20) * .1 - .9975
+            print "sheet z .5 -", x, y, x + .095, y + .095
+        }
+    }'
+}
+
+in_the_ceiling() { # [behind]: a lamp, which comes before the room or behind it
+    [ $# -eq 0 ] || room_with_post
+    paint lamp 0 10
+    sheet z 1 - .4 .4 .6 .6
+    [ $# -eq 1 ] || room_with_post
+}
+room_with_post() {
+    paint wall .5 0
+    sheet x 0 + 0 0 1 1
+    sheet x 1 - 0 0 1 1
+    sheet y 0 + 0 0 1 1
+    sheet y 1 - 0 0 1 1
+    sheet z 1 - 0 0 1 1
+    paint floor .5 0
+    sheet z 0 + 0 0 1 1
+    paint post .5 0
+    block .6 .6 0 .8 .8 .5
+}
+
+closet() { # [hall]: lit by a candle, beside a bright hall
+    paint closet .5 0
+    room 0 0 0 1 1 1
+    paint candle .5 10
+    sheet z .95 - .5 .5 .55 .55
+    [ $# -eq 0 ] && return
+    paint hall .5 0
+    room 2 0 0 4 2 2
+    paint lamp 0 1e5
+    sheet z 1.9 - 2.5 .5 3.5 1.5
+}
+
 hole() { # HALF_WIDTH HALF_HEIGHT: in a screen between a lamp and a floor
     paint floor .5 0
     sheet z 0 + -.5 -.5 .5 .5
@@ -609,6 +669,21 @@ window() { # WIDTH HEIGHT: a room of 5 x 4 x 2.7 m, ground and facades below a s
     sheet z 2.7 + 0 -.2 5 4
     sheet z -.1 + -10 -14 15 -.2
     view .4 3.6 1.6 3 .3 1 65
+}
+
+window_room() { # of 5 x 4 x 2.7 m, with a table, below a sky that a window shows
+    paint floor .3,.31,.34 0
+    sheet z 0 + 0 0 5 4
+    paint ceiling .83,.83,.82 0
+    sheet z 2.7 - 0 0 5 4
+    paint wall .78,.76,.7 0
+    sheet x 0 + 0 0 4 2.7
+    sheet x 5 - 0 0 4 2.7
+    sheet y 4 - 0 0 5 2.7
+    sheet y 0 + 0 0 5 2.7 2 1 2.8 1.8
+    paint wood .56,.4,.24 0
+    sides 1.2 1.5 0 2.6 2.3 .75 x- x+ y- y+ z+
+    view .4 3.6 1.7 3 .3 1 65
 }
 
 level_plate() { # RHO
