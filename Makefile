@@ -34,8 +34,7 @@
 #                        BEFORE=commit beside what that made; SCENES='cornell door': some
 #   make prove           long tests: `make check` on more ranks and by more compilers;
 #                        errors over six fourfold steps of epsilon; 500 random sets of
-#                        options; pictures beside the path tracer's; kills at forty
-#                        moments
+#                        options; kills at forty moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only), or
 #                        that of CASE=NAME
@@ -308,12 +307,11 @@ portability:
 check-long: $(PHR)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
 
-# About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
+# About an hour, most of it for references that are kept in $(BUILD)/prove.
 prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	$(MAKE) check PROVE=yes
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh
-	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
 # About five minutes on two cores, and ten more for truths, which are kept in
 # $(BUILD)/panel/truth. All runs are on one rank.
