@@ -108,8 +108,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         final_gather lamps checksum paths plan balance assign gather_mesh spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint shading mesh render options progress screened stop norms \
-        cie stability gaps converge linking exchange conjugate \
-        exact
+        stability gaps converge linking exchange conjugate exact
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 

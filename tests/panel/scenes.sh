@@ -409,6 +409,32 @@ hung_lamp() { # a block that shines, its top in the plane of the ceiling
     block .4 .4 .9 .6 .6 1
 }
 
+cie_planes() { # RECEIVER SOURCE: of a room of 4 x 4 x 3 m one reflects, one shines
+    plane_of_cie wall "$@"
+    sheet y 0 + 0 0 4 3
+    plane_of_cie floor "$@"
+    sheet z 0 + 0 0 4 4
+    plane_of_cie ceiling "$@"
+    if [ "$2" = ceiling ]; then sheet z 3 - 1.5 1.5 2.5 2.5; else sheet z 3 - 0 0 4 4; fi
+}
+plane_of_cie() {
+    rho=0 e=0
+    [ "$1" != "$2" ] || rho=.5
+    [ "$1" != "$3" ] || e=1
+    paint "$1" $rho $e
+}
+
+cie_slab() { # AXIS: light over a slab of 1 m, at points of the wall y = 0 or floor z = 0
+    paint source 0 1
+    sheet y 4 - 0 0 4 3
+    paint slab 0 0
+    block 0 2.5 0 4 2.7 1
+    for at in .25 .75 1.25 1.75 2.25 2.75; do
+        paint at-$at .5 0
+        sheet "$1" 0 + 1.995 "$(of "$at - .005")" 2.005 "$(of "$at + .005")"
+    done
+}
+
 # --- white rooms ---
 
 # sides X Y Z X Y Z SIDE...: these of a block, as x- (at the low x) or z+.
