@@ -30,8 +30,8 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make panel           every kind of scene in small, against its truth, a line each; with
-#                        BEFORE=commit beside what that made; SCENES='cornell door': some
+#   make panel           every kind of scene in small, against its truth, a line each;
+#                        with BEFORE=commit beside what that made; SCENES='cornell door'
 #   make prove           long tests: `make check` on more ranks and by more compilers;
 #                        errors over six fourfold steps of epsilon; 500 random sets of
 #                        options; kills at forty moments

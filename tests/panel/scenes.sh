@@ -56,13 +56,6 @@ facing() { # HEIGHT RHO E E2 [SPECK]: unit squares; a small thing between, black
     sheet z -1 - -5 -5 5 5
 }
 
-two_squares() { # HEIGHT RHO: the lower one emits
-    paint lamp "$2" 1
-    sheet z 0 + 0 0 1 1
-    paint other "$2" 0
-    sheet z "$1" - 0 0 1 1
-}
-
 discs() { # SIDES RHO
     paint lamp "$2" 1
     walk "$1" 0 0 1 0
