@@ -373,6 +373,19 @@ tetrahedron() {
     quad $4 $5 $6 $7 $8 $9 ${10} ${11} ${12} ${10} ${11} ${12}
 }
 
+on_ground() { # none or wide: a room whose wall a sheet before it lights
+    paint room .5 0
+    room 0 0 0 1 1 1
+    sheet x .0005 + .3 .3 .7 .7
+    block .3 .2 .1 .7 .5 .4
+    paint lamp 0 100
+    sheet z .95 - .4 .4 .6 .6
+    paint back 0 20
+    sheet x .0005 - .3 .3 .7 .7
+    paint ground 0 0
+    [ "$1" = none ] || sheet z -1 + -500 -500 500 500
+}
+
 inside_out() {
     paint all .5 1
     block 0 0 0 1 1 1
