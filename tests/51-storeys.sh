@@ -20,7 +20,7 @@ calls_to_form_factor      6     7
 includes_of_beyond        0     0
 ground_floor_lines     4149  4500
 source_lines          29547 16000
-test_lines            30239 16000
+test_lines            30215 16000
 long_lines                0     0
 what_per_1000_words     0.8     2
 that_per_1000_words     3.8    15
