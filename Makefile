@@ -30,12 +30,11 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make panel           every kind of scene in small, against its truth, a line each; with
-#                        BEFORE=commit beside what that made; SCENES='cornell door': some
+#   make panel           every kind of scene in small, against its truth, a line each;
+#                        with BEFORE=commit beside what that made; SCENES='cornell door'
 #   make prove           long tests: `make check` on more ranks and by more compilers;
 #                        errors over six fourfold steps of epsilon; 500 random sets of
-#                        options; pictures beside the path tracer's; kills at forty
-#                        moments
+#                        options; kills at forty moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only), or
 #                        that of CASE=NAME
@@ -110,8 +109,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint shading mesh render options progress screened stop norms \
-        cie whole stability gaps openings leaks sky converge linking exchange conjugate \
-        exact
+        stability gaps converge linking exchange conjugate exact
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 
@@ -253,7 +251,7 @@ numbers: errors build/room
 	BUILD="$(BUILD)" MAKE="$(MAKE)" sh tests/bench/numbers.sh
 
 # About two minutes on two cores.
-stability: $(PHR)
+stability: $(PHR) $(JUDGES:%=$(BUILD)/%)
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/stability.sh
 
 docs:
@@ -309,12 +307,11 @@ portability:
 check-long: $(PHR)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
 
-# About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
+# About an hour, most of it for references that are kept in $(BUILD)/prove.
 prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	$(MAKE) check PROVE=yes
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh
-	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
 # About five minutes on two cores, and ten more for truths, which are kept in
 # $(BUILD)/panel/truth. All runs are on one rank.

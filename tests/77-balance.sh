@@ -155,6 +155,11 @@ check "light that nothing loses is not" says none
 sed '/^f 1 2 4 3$/d; /^f 3 4 2 1$/d' "$work/room.obj" >"$work/open.obj"
 run 1 "$work/open.obj" --paper
 check "light that leaves an open room is not" says none
+# Links count both of two faces in one place: light grows without end.
+(. tests/panel/scenes.sh && make_scene "$work/double" 0 twice .6 1)
+run 1 "$work/double.obj" --paper --epsilon 1e-3
+check "a furnace of rho .6 whose faces are there twice diverges" \
+    [ "$status" -eq 1 -a "$(grep -c diverge "$work/log")" -eq 1 ]
 # Walls that glow, one of them under the lamp.
 cat >"$work/glow.mtl" <<'END'
 newmtl wall

@@ -1,5 +1,4 @@
-/* Whole runs as phr makes them, with its default options, and radiosity at a point as
- * pictures show it. For tests on one rank. */
+/* Whole runs as phr makes them, with its default options. For tests on one rank. */
 #ifndef TESTS_DEFAULTS_H
 #define TESTS_DEFAULTS_H
 
@@ -9,7 +8,6 @@
 
 #include "io/run/options.h"
 #include "tests/scenes.h"
-#include "tests/shaded.h"
 #include "tests/solve.h"
 
 /* Runs phr with these options, separated by single spaces, behind the scene. */
@@ -46,53 +44,6 @@ static inline struct solution solve_scene(struct scene *scene, const char *words
 static inline struct solution solve_soup(struct soup *soup, const char *words)
 {
     return solve_scene(scene_of_soup(soup), words);
-}
-
-/* --- answers --- */
-
-/* Area times radiosity over area, of the roots first .. first + count - 1. W/m^2, first
- * band. */
-static inline double mean_radiosity(const struct solution *s, int32_t first,
-                                    int32_t count)
-{
-    const struct forest *forest = s->solver->model.forest;
-    double light = 0.0, area = 0.0;
-    for (int32_t root = first; root < first + count; root++) {
-        light += forest_area(forest, root) * forest->radiosity[root].band[0];
-        area += forest_area(forest, root);
-    }
-    return light / area;
-}
-
-/* Smooth shading of the light of the links. */
-static inline struct shading *shade(const struct solution *s)
-{
-    return shading_create(s->solver->model.forest, s->octree, NULL, NULL,
-                          beyond_answer(s->solver)->outside);
-}
-
-/* Radiosity at a point in input units of one of the roots first .. first + count - 1, the
- * one that the point is on (or is least outside of). W/m^2, first band. */
-static inline double shown_at(const struct solution *s, const struct shading *shading,
-                              int32_t first, int32_t count, struct vec3 point)
-{
-    struct vec3 x = scene_from_input(s->scene, point);
-    double best[3] = {0, 0, 0}, least = -HUGE_VAL;
-    int32_t root = first;
-    for (int32_t r = first; r < first + count; r++) {
-        double weight[3];
-        struct triangle t = scene_root_triangle(s->scene, r);
-        triangle_weights(&t, x, weight);
-        double lowest = fmin(weight[0], fmin(weight[1], weight[2]));
-        if (lowest > least) {
-            least = lowest;
-            root = r;
-            memcpy(best, weight, sizeof best);
-        }
-    }
-    for (int k = 0; k < 3; k++)
-        best[k] = fmax(best[k], 0.0);
-    return shading_at(shading, shading->values, root, best).band[0];
 }
 
 #endif

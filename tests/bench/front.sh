@@ -18,31 +18,24 @@ set -eu
 1e-4/256/3 5e-5/128/3 3e-5/128/3 1e-4/256/2 1e-4/256/4}"
 folder=$BUILD/front
 . tests/bench/renew.sh
-. tests/traced.sh
+. tests/panel/scenes.sh
 export LC_ALL=C
 
-# quad MATERIAL X Y Z, four times.
-quad() {
-    printf 'usemtl %s\nv %s %s %s\nv %s %s %s\nv %s %s %s\nv %s %s %s\nf -4 -3 -2 -1\n' $@
+# trace NAME SCENE PATHS OPTIONS...: $traced.pfm by $folder/NAME.view, if it is not there.
+# The first of PATHS are those of a picture of fewer: as the mean of N is that of N/4 and
+# of 3N/4 more, both differ by sqrt(3) times the deviation of the whole.
+trace() {
+    traced=$folder/$1-$3 by=$folder/$1.view of=$2 paths=$3
+    shift 3
+    [ -e "$traced.pfm" ] || $MPIEXEC -n 2 build/pathtracer "$of" --quiet --view "$by" \
+        --samples "$paths" "$@" -o "$traced.pfm"
 }
 
-# A room with a block, 5 x 4 x 2.7 m, below a sky that is seen through a window.
-window_room() {
-    echo mtllib room.mtl
-    quad floor 0 0 0 5 0 0 5 4 0 0 4 0
-    quad ceiling 0 0 2.7 0 4 2.7 5 4 2.7 5 0 2.7
-    quad wall 0 0 0 0 4 0 0 4 2.7 0 0 2.7
-    quad wall 5 0 0 5 0 2.7 5 4 2.7 5 4 0
-    quad wall 0 4 0 5 4 0 5 4 2.7 0 4 2.7
-    quad wall 0 0 0 0 0 2.7 2 0 2.7 2 0 0
-    quad wall 2.8 0 0 2.8 0 2.7 5 0 2.7 5 0 0
-    quad wall 2 0 0 2 0 1 2.8 0 1 2.8 0 0
-    quad wall 2 0 1.8 2 0 2.7 2.8 0 2.7 2.8 0 1.8
-    quad wood 1.2 1.5 .75 2.6 1.5 .75 2.6 2.3 .75 1.2 2.3 .75
-    quad wood 1.2 1.5 0 2.6 1.5 0 2.6 1.5 .75 1.2 1.5 .75
-    quad wood 2.6 2.3 0 1.2 2.3 0 1.2 2.3 .75 2.6 2.3 .75
-    quad wood 1.2 2.3 0 1.2 1.5 0 1.2 1.5 .75 1.2 2.3 .75
-    quad wood 2.6 1.5 0 2.6 2.3 0 2.6 2.3 .75 2.6 1.5 .75
+# differ SIDE LAMP A B: the RMS difference of blocks of so many pixels along a side, in
+# percent; without those in which a sample of B is above LAMP.
+differ() {
+    build/imgdiff --blocks "$1" --below "$2" "$3" "$4" |
+        awk '$1 == "relative" { print 100 * $4 }'
 }
 
 # shown NAME LAMP SETTING OPTIONS...: a line of the CSV.
@@ -67,8 +60,7 @@ shown() {
 
 mkdir -p "$folder"
 cp scenes/*.obj scenes/*.mtl scenes/*.view "$folder"
-window_room >"$folder/window.obj"
-printf 'eye 0.4 3.6 1.7\nat 3 0.3 1\nup 0 0 1\nfov 65\n' >"$folder/window.view"
+make_scene "$folder/window" 0 window_room
 cp scenes/room4000.view "$folder/room6350.view"
 lines=$folder/lines.csv
 [ -f "$lines" ] || echo "scene,rays,setting,seconds,pixel,block" >"$lines"

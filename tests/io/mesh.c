@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/picture/vtk.h"
+#include "io/scene/sky.h"
 #include "tests/load.h"
 #include "tests/random.h"
 #include "tests/scenes.h"
@@ -225,6 +226,22 @@ static void test_ply(void)
     tap_ok(faces && at < size, "faces; more follows");
 }
 
+/* Meshes have the leaves and vertices of the scene alone, none of the sky. */
+static void test_sky(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(2, 0, 0), point(0, 1, 0), 1);
+    struct scene *scene = scene_of_soup(&soup);
+    sky_add(scene, (struct rgb){{1, 1, 1}});
+    struct world below = world_make(scene);
+    struct shading *all = shading_create_flat(below.model.forest);
+    tap_ok(mesh_count(below.model.forest) == 2 && all->own_count == 3 * 2 &&
+               all->vertex_count > all->own_count,
+           "the mesh of two triangles below a sky has none of the sky");
+    shading_destroy(all);
+    world_free(&below);
+}
+
 int main(void)
 {
     make_world();
@@ -232,6 +249,7 @@ int main(void)
     test_vtk(false);
     test_vtk(true);
     test_ply();
+    test_sky();
     struct error error = {EXIT_DONE, ""};
     struct mesh_answer none = {.error = NULL};
     tap_ok(!vtk_write(shading, &none, "build/mesh_test_absent/a.vtk", &error) &&

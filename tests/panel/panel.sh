@@ -2,10 +2,10 @@
 # BEFORE=commit a line of that commit below each, and a mark at figures that have become
 # worse by more than they scatter.
 #
-# mean, rms, worst, median, tenth, held and noise are those of judge.c; specks, grain,
-# block, most and peak those of shown.c. said: the summary's claim over the truth, of RMS,
-# median and tenth. power: absorbed over emitted. work: millions of tests. All others are
-# percent. Means over orders of faces; behind +- their deviation.
+# mean, rms, worst, median, tenth, held, noise and claim are those of judge.c; specks,
+# grain, block, most and peak those of shown.c. said: the claim of the summary over the truth,
+# of RMS, median and tenth. power: absorbed over emitted. work: millions of tests. All
+# others are percent. Means over orders of faces; behind +- their deviation.
 #
 # Knobs: SCENES, names of lines; CHECK=yes: those with an asterisk, as TAP against their
 # limits; PHR; ELEMENTS and SAMPLES of a truth, PATHS of a pixel, SIZE of a picture.
@@ -30,13 +30,16 @@ phr_of() {
     echo "$there/phr"
 }
 
-# built ORDER WORD...: $file.obj, and .view if there is one.
+# built ORDER/ORDERS WORD...: $file.obj, and .view if there is one.
 built() {
     order=$1
     shift
-    file=$folder/$name-$order
+    file=$folder/$name-${order%/*}
+    rm -f "$file.view"
     case $1 in
-    room) cp scenes/room.mtl "$folder" && build/room "$2" 1 >"$file.obj" ;;
+    room) cp scenes/room.mtl "$folder" && build/room "$2" 1 >"$file.obj"
+        [ "${3-}" != seen ] || printf '%s\n' "eye 2.4 .37 1.8" "at -.57 7.79 .2" \
+            "up 0 0 1" "fov 70" >"$file.view" ;;
     *)  if [ -f "scenes/$1.obj" ]; then
             cp scenes/*.mtl "$folder" && cp "scenes/$1.obj" "$file.obj"
             [ ! -f "scenes/$1.view" ] || cp "scenes/$1.view" "$file.view"
@@ -79,16 +82,16 @@ is_shown() {
 # solved SIDE PHR ORDER: a line of figures of one run.
 solved() {
     picture=""
+    rm -f "$folder/solution.ply" "$folder/stats" "$folder/shown.pfm"
     ! is_shown || picture="--view $file.view --size ${SIZE}x$SIZE -o $folder/shown.pfm"
-    rm -f "$folder/stats" "$folder/solution.ply" "$folder/shown.pfm"
     spent=$( ("$2" "$file.obj" --quiet $options --stats "$folder/stats" $picture \
         -o "$folder/solution.ply" >"$folder/log" 2>&1; times) | processor_seconds)
     [ -f "$folder/stats" ] || { echo "$name $1 $3 fails"; return; }
     set -- "$1" "$3" "$spent" $("$BUILD/judge" $sky "$file.obj" "$folder/solution.ply" \
-        $by 2>&1)
+        $by 2>>"$folder/log" || echo - - - - - - - - -)
     set -- "$@" $([ -z "$picture" ] && echo - - - - - ||
         "$BUILD/shown" "$folder/shown.pfm" ${shots-})
-    awk -v head="$name $1 $2 $3" '
+    cat "$folder/stats" 2>"$folder/log" | awk -v head="$name $1 $2 $3" '
         function key(name) {
             if (!match($0, "\"" name "\": [-+.e0-9]*")) return "-"
             return substr($0, RSTART + length(name) + 4, RLENGTH - length(name) - 4) + 0
@@ -103,9 +106,9 @@ solved() {
         /"work"/ { inside = 1 }
         inside { work += key("all") }
         /^  }/ { inside = 0 }
-        END { part = emitted > 0 ? absorbed / emitted : "-"
+        END { OFMT = "%.9g"; part = emitted > 0 ? absorbed / emitted : "-"
               print head, work / 1e6, part,
-                  said == "" ? "- - -" : said }' "$folder/stats" | tr '\n' ' '
+                  said == "" ? "- - -" : said }' | tr '\n' ' '
     shift 3
     echo "$*"
 }
@@ -117,23 +120,27 @@ factors() {
         awk -F, -v from="${want%,*}" -v to="${want#*,}" '$1 == from && $2 == to {
             print $4 }')
     echo "$name after 0 0 0 - - - - 1 $(of "100 * ($found / ${by#*=} - 1)")" \
-        "- - - - - - - - - - -"
+        "- - - - - - - - - - - -"
 }
 
 figures=$folder/figures
 : >"$figures"
 [ -z "$BEFORE" ] || before=$(phr_of "$BEFORE")
-grep '|' tests/panel/table | grep -v '^#' | tr -s ' ' >"$folder/lines"
+awk '/^#/ { next } { line = line $0 } sub(/\\$/, "", line) { next }
+    line ~ /\|/ { gsub(/ +/, " ", line); print line } { line = "" }' tests/panel/table \
+    >"$folder/lines"
 while IFS='|' read -r name scene options by limits; do
     starred=${name%"${name#?}"} name=$(echo ${name#\*})
     [ -z "$CHECK" ] || [ "$starred" = '*' ] || continue
     case " $SCENES " in "  " | *" $name "*) ;; *) continue ;; esac
     options=$(echo $options | sed 's/e3/--epsilon 1e-3 --final-gather 64/
-        s/sky=/--sky /')
-    sky=$(echo "$options" | sed -n 's/.*\(--sky .*\)/\1/p') by=$(echo $by) orders=0 shots=
-    case $limits in *orders*) orders="0 1 2" ;; esac
-    for order in $orders; do
-        built "$order" $scene
+        s/eps=/--epsilon /; s/rays=/--final-gather /; s/tol=/--tolerance /
+        s/level=/--max-level /; s/paper/--paper/; s/sky=/--sky /')
+    sky=$(echo "$options" | sed -n 's/.*\(--sky .*\)/\1/p') by=$(echo $by) orders=1 shots=
+    case $limits in *orders*) orders=${limits##*orders=} orders=${orders%% *} ;; esac
+    turn=0
+    while [ $turn -lt "$orders" ]; do
+        built "$turn/$orders" $scene
         kept=$by
         case " $by" in *" paths"*)
             paths=${by##*paths} paths=${paths#/} by=${by%%paths*}
@@ -144,13 +151,13 @@ while IFS='|' read -r name scene options by limits; do
             factors
         else
             [ ! -f "$file.view" ] || [ -n "$CHECK" ] || traced
-            solved after "$PHR" "$order"
-            [ -z "$BEFORE" ] || solved before "$before" "$order"
+            solved after "$PHR" "$turn"
+            [ -z "$BEFORE" ] || solved before "$before" "$turn"
         fi
-        by=$kept
+        by=$kept turn=$((turn + 1))
     done >>"$figures" </dev/null
     [ -n "$CHECK" ] || grep "^$name " "$figures" | awk -f tests/panel/line.awk \
         -v head="${head-yes}"
     head=
 done <"$folder/lines"
-[ -z "$CHECK" ] || awk -f tests/panel/check.awk tests/panel/table "$figures"
+[ -z "$CHECK" ] || awk -f tests/panel/check.awk "$folder/lines" "$figures"

@@ -1,7 +1,8 @@
-# Shapes, a line each, to OBJ: `awk -f shapes.awk -v name=NAME -v order=K`.
+# Shapes, a line each, to OBJ: `awk -f shapes.awk -v name=NAME -v order=K/N`.
 #
 #   paint NAME RHO EMISSION       the faces that follow; a number, or three as r,g,b
 #   group NAME                    the same, of the paint there is, are another group
+#   cells N                       sheets that follow are N x N of them
 #   quad X Y Z, four times        corners counter-clockwise as seen from the front
 #   sheet AXIS AT SIGN A B C D    the rectangle A..C x B..D across an axis, at AT on it;
 #     [HOLE, four numbers]        A is of the first of the other axes; the front looks
@@ -13,8 +14,8 @@
 #   at X Y Z                      where the axis of walks is
 #   view EYE AT FOV               seven numbers: the camera, z up, or y if FOV is below 0
 #
-# Faces of one paint are a group of its name. `order`: faces in K thirds of their number
-# later come first. NAME.obj, NAME.mtl and NAME.view are written.
+# Faces of one paint are a group of its name. `order`, K/N: faces in K N-ths of their
+# number later come first. NAME.obj, NAME.mtl and NAME.view are written.
 
 function number(x) { return sprintf("%.15g", x) }
 function corner(x, y, z,   key) {
@@ -47,14 +48,20 @@ function across(axis, k, at, a, b) {
     else if (axis == "y") put(k, a, at, b)
     else put(k, a, b, at)
 }
-function sheet(axis, at, sign, a, b, c, d,   turned) {
-    if (a >= c || b >= d) return
-    turned = (sign == "-") != (axis == "y")
+function cell(axis, at, turned, a, b, c, d) {
     across(axis, 1, at, a, b)
     across(axis, turned ? 4 : 2, at, c, b)
     across(axis, 3, at, c, d)
     across(axis, turned ? 2 : 4, at, a, d)
     face(4)
+}
+function sheet(axis, at, sign, a, b, c, d,   turned, i, k) {
+    if (a >= c || b >= d) return
+    turned = (sign == "-") != (axis == "y")
+    for (i = 0; i < cells; i++)
+        for (k = 0; k < cells; k++)
+            cell(axis, at, turned, a + (c - a) * i / cells, b + (d - b) * k / cells,
+                 a + (c - a) * (i + 1) / cells, b + (d - b) * (k + 1) / cells)
 }
 function box(inwards,   low, high) {
     low = inwards ? "+" : "-"; high = inwards ? "-" : "+"
@@ -77,7 +84,8 @@ function bands(x,   part) {
     return split(x, part, ",") == 3 ? part[1] " " part[2] " " part[3] : x " " x " " x
 }
 
-BEGIN { pi = atan2(0, -1) }
+BEGIN { pi = atan2(0, -1); cells = 1 }
+$1 == "cells" { cells = $2 }
 $1 == "paint" {
     painted = grouped = $2
     if (!known[$2]++)
@@ -113,7 +121,8 @@ END {
     own = name; sub(/.*\//, "", own)
     print "mtllib " own ".mtl" >(name ".obj")
     for (k = 1; k <= vertices; k++) print points[k] >(name ".obj")
-    first = int(face_count / 3) * order
+    split(order, turn, "/")
+    first = turn[1] ? int(face_count / turn[2]) * turn[1] : 0
     for (k = 0; k < face_count; k++) {
         at = (first + k) % face_count + 1
         head = "g " group_of[at] "\nusemtl " paint_of[at]

@@ -2,7 +2,6 @@
  * patches: the light of these at leaves and points, against closed forms. */
 #include "geom/contour.h"
 #include "rad/beyond/gather/factor.h"
-#include "rad/beyond/paths.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
@@ -303,104 +302,6 @@ static void test_bright_rows(void)
     trial_free(&g);
 }
 
-/* The mean B of the walls of a closet that a candle lights, alone or next to a hall. */
-static double light_of_closet(bool hall)
-{
-    struct soup soup = {0};
-    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    paint(&soup, 0.5, 0.0);
-    soup_add_quad(&soup, point(0.5, 0.5, 0.95), point(0, 0.05, 0), point(0.05, 0, 0), 1);
-    paint(&soup, 0.5, 10.0);
-    if (hall)
-        soup_add_box(&soup, point(2, 0, 0), point(4, 2, 2), 1, true);
-    paint(&soup, 0.5, 0.0);
-    if (hall)
-        soup_add_quad(&soup, point(2.5, 0.5, 1.9), point(0, 1, 0), point(1, 0, 0), 1);
-    paint(&soup, 0.0, 1e5);
-    struct solution s = solve_soup(&soup, "");
-    double mean = mean_radiosity(&s, 0, 12);
-    solution_free(&s);
-    return mean;
-}
-
-/* The candle is no lamp next to the hall's light, but it is all the closet has. Coarser
- * leaves are one reason for the difference, noise is the other. */
-static void test_candle(void)
-{
-    double alone = light_of_closet(false), beside = light_of_closet(true);
-    tap_ok(fabs(beside / alone - 1.0) <= 0.03,
-           "beside a bright hall a closet has B = %.5f, alone %.5f", beside, alone);
-}
-
-/* A floor below a lamp as wide and 40 small black squares between them, against paths,
- * with a noise of .2 %. If points that have learnt blockers tell how much of the lamp is
- * seen, too, blockers that they have missed do not count, and the floor is 7 % too
- * bright. */
-static void test_foliage(void)
-{
-    enum { SQUARES = 40, SEGMENTS = 32, PATHS = 200000 };
-    struct random random = random_seed(31);
-    struct soup soup = {0};
-    double truth = 0.0;
-    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&soup, 0.999, 0.0);
-    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
-    paint(&soup, 0.0, 1.0);
-    for (int k = 0; k < SQUARES; k++) {
-        double x = random_unit(&random), y = random_unit(&random);
-        double z = 0.1 + 0.8 * random_unit(&random), turn = 0.1 * random_unit(&random);
-        soup_add_quad(&soup, point(x, y, z), point(0.06, 0, turn), point(0, 0.06, -turn),
-                      1);
-    }
-    paint(&soup, 0.0, 0.0);
-    struct trial g = gather_scene(&soup, "--max-level 3", SEGMENTS);
-    struct pathtracer pathtracer = pathtracer_make(g.s.scene, g.s.octree);
-    struct triangle whole = pathtracer_part(id_of_root(0));
-    for (int32_t root = 0; root < 2; root++)
-        truth += 0.5 / 0.999 *
-                 pathtracer_reflected(&pathtracer, root, &whole, PATHS, 1).band[0];
-    double h = mean_of_roots(&g, 0, 2);
-    tap_ok(fabs(h / truth - 1.0) <= 0.02, "below foliage: H = %.4f, by paths %.4f", h,
-           truth);
-    pathtracer_free(&pathtracer);
-    trial_free(&g);
-}
-
-/* A small floor below a wide lamp, and halfway a screen of 400 black squares: from each
- * point exact factors tell what they hide. More of them are in the way than are cut out
- * exactly, so the others count by segments: as a quarter of them passes, 2 % of noise.
- * If these counted alike, wherever they end, the floor would be 38 % too bright. */
-static void test_screen(void)
-{
-    enum { SIDE = 20, SQUARES = SIDE * SIDE, SEGMENTS = 4096, POINTS = 64 };
-    const double step = 2.0 / SIDE, gap = 0.025 * step, width = 0.95 * step;
-    struct soup soup = {0};
-    double truth = 0.0;
-    soup_add_quad(&soup, point(-0.1, -0.1, 0), point(0.2, 0, 0), point(0, 0.2, 0), 1);
-    paint(&soup, 0.5, 0.0);
-    soup_add_quad(&soup, point(-5, -5, 1), point(0, 10, 0), point(10, 0, 0), 1);
-    paint(&soup, 0.0, 1.0);
-    for (int k = 0; k < SQUARES; k++)
-        soup_add_quad(&soup, point(k % SIDE * step - 1 + gap, k / SIDE * step - 1 + gap,
-                                   0.5),
-                      point(0, width, 0), point(width, 0, 0), 1);
-    paint(&soup, 0.0, 0.0);
-    struct trial g = gather_scene(&soup, "--max-level 0", SEGMENTS);
-    for (int k = 0; k < POINTS; k++) {
-        struct vec3 x = point((k % 8 - 3.5) / 40, (k / 8 - 3.5) / 40, 0);
-        x = scene_from_input(g.s.scene, x);
-        for (int32_t i = 2; i < 4 + 2 * SQUARES; i++) {
-            struct triangle t = scene_root_triangle(g.s.scene, i);
-            truth += (i < 4 ? 1.0 : -1.0) *
-                     point_triangle_factor(x, point(0, 0, 1), &t) / POINTS;
-        }
-    }
-    double h = mean_of_roots(&g, 0, 2);
-    tap_ok(fabs(h / truth - 1.0) <= 0.1, "behind a screen: H = %.4f, exact %.4f", h,
-           truth);
-    trial_free(&g);
-}
-
 /* A wall at x = 4 from z = `foot` on, in pieces around a window of a metre: the fourth is
  * its sill. */
 static void add_wall_with_window(struct soup *soup, int pieces, double foot)
@@ -504,33 +405,6 @@ static void test_sky_behind_window(void)
     trial_free(&g);
 }
 
-/* A lamp in the plane of the ceiling that comes before it in the file: rays meet the
- * ceiling, segments reach the lamp, and the room is as bright as with the lamp behind. */
-static void test_flush_lamp(void)
-{
-    double mean[2];
-    for (int first = 0; first < 2; first++) {
-        struct soup soup = {0};
-        for (int part = 0; part < 2; part++)
-            if (part == first) {
-                soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-                soup_add_box(&soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1, false);
-                paint(&soup, 0.5, 0.0);
-            } else {
-                soup_add_quad(&soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
-                              point(0.2, 0, 0), 1);
-                paint(&soup, 0.0, 10.0);
-            }
-        struct solution s = solve_soup(&soup, "");
-        int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
-        mean[first] = s.solver->model.forest->radiosity[floor].band[0];
-        solution_free(&s);
-    }
-    tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
-           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1],
-           mean[0]);
-}
-
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -544,13 +418,9 @@ int main(int argc, char **argv)
     test_bright_part(point(0.4, 0.6, 0.97), 0.004, "--max-level 7");
     test_bright_part(point(0.01, 0, 0.98), 1.0, "--max-level 7");
     test_bright_rows();
-    test_candle();
-    test_foliage();
-    test_screen();
     test_window(true);
     test_window(false);
     test_sky_behind_window();
-    test_flush_lamp();
     comm_stop(&world_comm);
     return tap_done();
 }
