@@ -29,7 +29,7 @@ enum { TILES = 2, CORNERS = (TILES + 1) * (TILES + 2) / 2 };
 enum { FEWER = 2, SEGMENTS = 8 };
 
 /* A leaf, and what its light is found by. */
-struct spot {
+struct parcel {
     const struct shading *shading;
     struct final_gather *gather;
     int32_t leaf;
@@ -40,14 +40,14 @@ struct spot {
 
 /* Finds what is met first on the way from the leaf's middle to a point x of it, and a
  * little farther, rising a little; `share`: of the way to x. */
-static bool is_met(const struct spot *spot, struct vec3 x, struct octree_hit *hit,
+static bool is_met(const struct parcel *parcel, struct vec3 x, struct octree_hit *hit,
                    double *share)
 {
     static const double FARTHER = 1.1, RISE = 0.02;
-    struct model *model = spot->gather->model;
-    struct vec3 way = vec3_sub(x, spot->middle);
+    struct model *model = parcel->gather->model;
+    struct vec3 way = vec3_sub(x, parcel->middle);
     double length = vec3_length(way);
-    struct vec3 normal = spot->plane.normal, from = point_above(spot->middle, normal);
+    struct vec3 normal = parcel->plane.normal, from = point_above(parcel->middle, normal);
     struct vec3 direction = vec3_add(way, vec3_scale(normal, RISE * length));
     if (!(length > 0.0) ||
         !octree_first_hit(model->octree, from, vec3_unit(direction), false, hit,
@@ -67,10 +67,10 @@ static int32_t root_of(const struct forest *forest, int32_t patch)
 
 /* True if the point of a root met sends less than `most`, over bands, W/m^2. Light of
  * lamps is found by segments, since the leaf there may reach far out of the shade. */
-static bool sends_less(const struct spot *spot, int32_t root,
+static bool sends_less(const struct parcel *parcel, int32_t root,
                        const struct octree_hit *hit, double most)
 {
-    const struct shading *shading = spot->shading;
+    const struct shading *shading = parcel->shading;
     const struct scene *scene = shading->forest->scene;
     const struct material *m = scene_root_material(scene, root);
     double w[3] = {hit->weight[0], hit->weight[hit->front ? 1 : 2],
@@ -83,7 +83,7 @@ static bool sends_less(const struct spot *spot, int32_t root,
     struct gather_points points = {.at = &x, .count = 1, .middle = x, .root = root,
                                    .plane = scene_root_plane(scene, root)};
     struct gather_light light =
-        final_gather_at(spot->gather, &points, 1, SEGMENTS, 0);
+        final_gather_at(parcel->gather, &points, 1, SEGMENTS, 0);
     for (int c = 0; c < BANDS; c++)
         sent.band[c] += m->reflectance.band[c] * light.lamps.band[c];
     return rgb_sum(sent) < most;
@@ -91,16 +91,16 @@ static bool sends_less(const struct spot *spot, int32_t root,
 
 /* True if a dark surface ends the leaf on one of six ways from its middle, and nothing
  * stands on it: inside of things there is no light to be found. */
-static bool touches_dark(const struct spot *spot)
+static bool touches_dark(const struct parcel *parcel)
 {
-    const struct forest *forest = spot->shading->forest;
-    const struct material *m = forest_material(forest, spot->leaf);
-    int32_t own = root_of(forest, spot->leaf);
+    const struct forest *forest = parcel->shading->forest;
+    const struct material *m = forest_material(forest, parcel->leaf);
+    int32_t own = root_of(forest, parcel->leaf);
     struct triangle triangle = scene_root_triangle(forest->scene, own);
-    const struct vec3 *corner = spot->triangle.corner;
+    const struct vec3 *corner = parcel->triangle.corner;
     double weight[3], arrives = 0.0, share;
-    triangle_weights(&triangle, spot->middle, weight);
-    struct rgb rest = shading_at(spot->shading, spot->shading->values, own, weight);
+    triangle_weights(&triangle, parcel->middle, weight);
+    struct rgb rest = shading_at(parcel->shading, parcel->shading->values, own, weight);
     for (int c = 0; c < BANDS; c++)
         if (m->reflectance.band[c] > 0.0)
             arrives += (rest.band[c] - m->emission.band[c]) / m->reflectance.band[c];
@@ -108,27 +108,27 @@ static bool touches_dark(const struct spot *spot)
     for (int k = 0; k < 6; k++) {
         struct octree_hit hit;
         struct vec3 x = vec3_middle(corner[k % 3], corner[(k + k / 3) % 3]);
-        if (!is_met(spot, x, &hit, &share))
+        if (!is_met(parcel, x, &hit, &share))
             continue;
         if (share < ENDS)
             return false;
         int32_t root = scene_root_on(forest->scene, hit.triangle, hit.front);
-        dark = dark || (root >= 0 && sends_less(spot, root, &hit, DARK * arrives));
+        dark = dark || (root >= 0 && sends_less(parcel, root, &hit, DARK * arrives));
     }
     return dark;
 }
 
 /* Returns the radiosity at the point x of the leaf by all but the light of lamps. */
-static struct rgb find_rest(const struct spot *spot, struct vec3 x)
+static struct rgb find_rest(const struct parcel *parcel, struct vec3 x)
 {
     static const double BEFORE = 0.97;
-    const struct material *m = forest_material(spot->shading->forest, spot->leaf);
-    int rays = (spot->gather->model->criterion.final_gather + FEWER - 1) / FEWER;
-    x = vec3_add(spot->middle, vec3_scale(vec3_sub(x, spot->middle), BEFORE));
+    const struct material *m = forest_material(parcel->shading->forest, parcel->leaf);
+    int rays = (parcel->gather->model->criterion.final_gather + FEWER - 1) / FEWER;
+    x = vec3_add(parcel->middle, vec3_scale(vec3_sub(x, parcel->middle), BEFORE));
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
-                                   .plane = spot->plane,
-                                   .root = root_of(spot->shading->forest, spot->leaf)};
-    struct gather_light light = final_gather_at(spot->gather, &points, 1, 1, rays);
+                                   .plane = parcel->plane,
+                                   .root = root_of(parcel->shading->forest, parcel->leaf)};
+    struct gather_light light = final_gather_at(parcel->gather, &points, 1, 1, rays);
     struct rgb rest = m->emission;
     for (int c = 0; c < BANDS; c++)
         rest.band[c] += m->reflectance.band[c] * light.rest.band[c];
@@ -149,11 +149,11 @@ static void see(struct final_gather *gather, const struct shading *shading, int3
     const struct forest *forest = shading->forest;
     struct triangle triangle = forest_triangle(forest, leaf);
     int32_t root = root_of(forest, leaf);
-    struct spot spot = {shading, gather, leaf, triangle,
+    struct parcel parcel = {shading, gather, leaf, triangle,
                         scene_root_plane(forest->scene, root),
                         triangle_centroid(&triangle)};
     shading->seen[leaf] = true;
-    if (!touches_dark(&spot))
+    if (!touches_dark(&parcel))
         return;
     struct rgb *tiles = alloc_array(CORNERS, sizeof *tiles);
     struct rgb found = {{0.0, 0.0, 0.0}}, mesh = found;
@@ -166,7 +166,7 @@ static void see(struct final_gather *gather, const struct shading *shading, int3
                                   (double)j / TILES};
             struct vec3 x = corners_mean(triangle.corner, weight);
             double at[3];
-            tiles[corner_number(i, j)] = find_rest(&spot, x);
+            tiles[corner_number(i, j)] = find_rest(&parcel, x);
             triangle_weights(&whole, x, at);
             rgb_add(&found, around, tiles[corner_number(i, j)]);
             rgb_add(&mesh, around, shading_at(shading, shading->values, root, at));

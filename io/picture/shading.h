@@ -27,7 +27,7 @@ struct shading {
     int64_t own_count;           /* vertices before those of a sky */
     bool *divided;               /* [forest->count] leaf with T-vertices */
     uint8_t *shades;             /* [forest->count] enum shade of a leaf */
-    bool *seen;                  /* [patches] `tiles` are known, of io/picture/contact.h */
+    bool *seen;                  /* [patches] `tiles` are known, by contact.h */
     struct rgb **tiles;          /* [patches] light at corners, W/m^2; NULL: no contact */
     struct vertices *vertices;   /* finds vertices; owns positions */
 };
