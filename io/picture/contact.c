@@ -28,7 +28,7 @@ enum { TILES = 2, CORNERS = (TILES + 1) * (TILES + 2) / 2 };
  * met. */
 enum { FEWER = 2, SEGMENTS = 8 };
 
-/* A leaf, and what its light is found by. */
+/* A leaf, and the means to find its light. */
 struct parcel {
     const struct shading *shading;
     struct final_gather *gather;
@@ -38,7 +38,7 @@ struct parcel {
     struct vec3 middle;
 };
 
-/* Finds what is met first on the way from the leaf's middle to a point x of it, and a
+/* Finds the surface met first on the way from the leaf's middle to a point x of it, and a
  * little farther, rising a little; `share`: of the way to x. */
 static bool is_met(const struct parcel *parcel, struct vec3 x, struct octree_hit *hit,
                    double *share)
@@ -127,7 +127,8 @@ static struct rgb find_rest(const struct parcel *parcel, struct vec3 x)
     x = vec3_add(parcel->middle, vec3_scale(vec3_sub(x, parcel->middle), BEFORE));
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = parcel->plane,
-                                   .root = root_of(parcel->shading->forest, parcel->leaf)};
+                                   .root = root_of(parcel->shading->forest,
+                                                   parcel->leaf)};
     struct gather_light light = final_gather_at(parcel->gather, &points, 1, 1, rays);
     struct rgb rest = m->emission;
     for (int c = 0; c < BANDS; c++)

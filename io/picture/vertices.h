@@ -5,7 +5,7 @@
 #include "octree/octree.h"
 #include "rad/patch.h"
 
-/* What a leaf has in place of a parted vertex. */
+/* The vertex of a leaf in place of a parted one. */
 struct vertex_part {
     int32_t leaf;
     int32_t vertex; /* -1: none of its own, where the vertex lies inside its edge */
