@@ -38,7 +38,7 @@ struct pile { /* links of one rank, by number */
     int64_t *items, count, capacity;
 };
 
-struct totals {
+struct tally {
     int64_t dealt, slowest, bytes;
 };
 
@@ -182,7 +182,7 @@ static int64_t find_loads(const struct record *record, const struct pile *piles,
 }
 
 static void replay_pass(struct record *record, const struct criterion *criterion,
-                        int pass, int ranks, struct totals *totals)
+                        int pass, int ranks, struct tally *totals)
 {
     int64_t at = record->pass_at[pass];
     int64_t links = number_children(record, at, record->pass_at[pass + 1]);
@@ -224,7 +224,7 @@ int main(int argc, char **argv)
     }
     record_run(&comm, scene, &options.criterion, &record);
     for (char *ranks = strtok(argv[1], ","); ranks; ranks = strtok(NULL, ",")) {
-        struct totals totals = {0};
+        struct tally totals = {0};
         for (int pass = 0; pass < record.passes; pass++)
             replay_pass(&record, &options.criterion, pass, atoi(ranks), &totals);
         printf("%s %lld %lld %lld\n", ranks, (long long)totals.dealt,
