@@ -43,6 +43,7 @@ static void show_solution(struct solution_mesh *solution)
     run.octree = octree_create(run.scene->triangles, run.scene->planes,
                                run.scene->input_count);
     FUZZ_PROMISE(run.error.code == EXIT_DONE && stored_light(&run) && results_show(&run));
+    alloc_free(run.exposures);
     solver_destroy(run.solver);
     octree_destroy(run.octree);
     options_free(&run.options);
