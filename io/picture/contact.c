@@ -105,9 +105,11 @@ static bool touches_dark(const struct parcel *parcel)
         if (m->reflectance.band[c] > 0.0)
             arrives += (rest.band[c] - m->emission.band[c]) / m->reflectance.band[c];
     bool dark = false;
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 6; k++) { /* beside a corner two faces may meet: not to it */
         struct octree_hit hit;
-        struct vec3 x = vec3_middle(corner[k % 3], corner[(k + k / 3) % 3]);
+        double part = k < 3 ? 0.0625 : 0.5;
+        struct vec3 a = corner[k % 3], along = vec3_sub(corner[(k + 1) % 3], a);
+        struct vec3 x = vec3_add(a, vec3_scale(along, part));
         if (!is_met(parcel, x, &hit, &share))
             continue;
         if (share < ENDS)
