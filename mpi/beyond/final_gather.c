@@ -535,9 +535,10 @@ static void keep_light(struct gathering *g)
 }
 
 /* Finds spaces that are closed though rays escape: in a thing that touches walls and has
- * no faces there, rays are lost on backs, but no light gets in. Leaves with a thing across
- * have rays of both sides, and tell nothing. Lost light is held against what is absorbed:
- * in a white room it is missing at every reflection. Returns whether there are more. */
+ * no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
+ * across have rays of both sides, and tell nothing. Lost light is held against what is
+ * absorbed: in a white room it is missing at every reflection. Returns whether there are
+ * more. */
 static bool find_more_closed(struct gathering *g, const struct rgb *b)
 {
     int32_t spaces = lit_count(&g->solver->model);

@@ -3,8 +3,8 @@
 # worse by more than they scatter.
 #
 # mean, rms, worst, median, tenth, held, noise and claim are those of judge.c; specks,
-# grain, block, most and peak those of shown.c. said: the claim of the summary over the truth,
-# of RMS, median and tenth. power: absorbed over emitted. work: millions of tests. All
+# grain, block, most and peak those of shown.c. said: the claim of the summary over the
+# truth, of RMS, median and tenth. power: absorbed over emitted. work: millions of tests. All
 # others are percent. Means over orders of faces; behind +- their deviation.
 #
 # Knobs: SCENES, names of lines; CHECK=yes: those with an asterisk, as TAP against their

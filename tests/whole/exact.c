@@ -178,7 +178,8 @@ static void test_balance(const struct comm *comm)
     }
     for (int r = 0; r < comm->size; r++)
         proxies = proxies && (s.stats.proxies[r] > 0) == (comm->size > 1);
-    int64_t wrong = find_proxies(s.solver) != s.stats.proxies[comm->rank];
+    int64_t found = find_proxies(s.solver), told = s.stats.proxies[comm->rank];
+    int64_t wrong = told < found || told > found + found / 8; /* a proxy stays one */
     comm_add(comm, &wrong, 1);
     if (comm->rank == 0) {
         tap_ok((sent > 0) == (comm->size > 1), "%lld links move before levels",
