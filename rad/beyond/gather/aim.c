@@ -4,8 +4,8 @@
  * the light of nodes with nothing in the way, half by the part of this light seen from
  * the region. So a lamp behind a wall, however bright, leaves some segments for lamps in
  * the room, and a segment to a node not seen from the region counts at most twice. (Light
- * of another space, as long as no segment has seen any, has next to none of the first
- * half, and adds nothing to what a leaf is unsure of.) A
+ * of another space, as long as no segment has seen any, has a fifth of the first half at
+ * most, and adds nothing to what a leaf is unsure of.) A
  * sender of which the exact factor is F, and n segments of which have the kernels K
  * between their ends and meet a blocker or not (V), brings
  *
