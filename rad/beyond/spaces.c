@@ -23,14 +23,14 @@ static const double FAINT = 0x1p-40;
 /* --- light --- */
 
 /* Sums over the roots of a space. */
-struct space_sums {
+struct root_sums {
     struct rgb emitted;   /* W, areas in square scene units */
     struct rgb absorbing; /* area times 1 - rho, square scene units */
     double power;         /* emitted, over all bands; of a sky what enters, W */
     double area;          /* without a sky, square scene units */
 };
 
-static void add_root(struct space_sums *sums, const struct scene *scene, int32_t root)
+static void add_root(struct root_sums *sums, const struct scene *scene, int32_t root)
 {
     const struct material *material = scene_root_material(scene, root);
     double area = scene_root_area(scene, root);
@@ -43,7 +43,7 @@ static void add_root(struct space_sums *sums, const struct scene *scene, int32_t
 }
 
 /* Evenly spread light has the radiosity E / (1 - rho), by the means of E and rho. */
-static double light_of(const struct space_sums *sums)
+static double light_of(const struct root_sums *sums)
 {
     struct rgb typical;
     for (int c = 0; c < BANDS; c++)
@@ -53,7 +53,7 @@ static double light_of(const struct space_sums *sums)
 
 double scene_light(const struct scene *scene)
 {
-    struct space_sums all = {.power = 0.0};
+    struct root_sums all = {.power = 0.0};
     for (int32_t root = 0; root < scene_root_count(scene); root++)
         add_root(&all, scene, root);
     all.power = scene_entering_power(scene);
@@ -90,7 +90,7 @@ static void join_small_parts(struct spaces *spaces, int32_t all)
 
 int space_rays(const struct scene *scene)
 {
-    enum { LEAST = 4, ALL = 1 << 14 }; /* of a root; of all, some milliseconds */
+    enum { LEAST = 4, ALL = 1 << 13 }; /* of a root; of all, some milliseconds */
     int each = ALL / scene_root_count(scene);
     return each > LEAST ? each : LEAST;
 }
@@ -141,7 +141,7 @@ static double *find_light(const struct scene *scene, const struct spaces *spaces
 {
     const int32_t *part = spaces->part;
     int32_t all = scene_root_count(scene);
-    struct space_sums *sums = alloc_array((size_t)all + 1, sizeof *sums);
+    struct root_sums *sums = alloc_array((size_t)all + 1, sizeof *sums);
     double *light = alloc_array((size_t)all + 1, sizeof *light);
     double entering = scene_entering_power(scene) - scene_emitted_power(scene);
     for (int32_t root = 0; root < all; root++)

@@ -4,8 +4,8 @@
 #
 # mean, rms, worst, median, tenth, held, noise and claim are those of judge.c; specks,
 # grain, block, most and peak those of shown.c. said: the claim of the summary over the
-# truth, of RMS, median and tenth. power: absorbed over emitted. work: millions of tests. All
-# others are percent. Means over orders of faces; behind +- their deviation.
+# truth, of RMS, median and tenth. power: absorbed over emitted. work: millions of tests.
+# All others are percent. Means over orders of faces; behind +- their deviation.
 #
 # Knobs: SCENES, names of lines; CHECK=yes: those with an asterisk, as TAP against their
 # limits; PHR; ELEMENTS and SAMPLES of a truth, PATHS of a pixel, SIZE of a picture.
