@@ -151,7 +151,7 @@ static struct estimate by_segments_of_phr(const struct place *at, int n)
     struct gather_points points = {.at = &at->x, .count = 1, .middle = at->x,
                                    .plane = at->model->scene->planes[at->root],
                                    .root = at->root};
-    struct gather_light light = final_gather_at(at->gather, &points, at->seed, n, 0);
+    struct gather_light light = final_gather_at(at->gather, &points, at->seed, n, false);
     return (struct estimate){light.lamps.band[0], light.variance / BANDS};
 }
 

@@ -31,7 +31,6 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
-#include "io/picture/contact.h"
 #include "rad/beyond/sample.h"
 
 enum {
@@ -155,15 +154,11 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
                                    .above = facade.curved};
     points.plane = facade_plane(&facade, middle, points.middle);
     bool whole = view->whole[0] > 0;
-    struct gather_light light =
-        final_gather_at(gather, &points, seed, rays, whole ? rays : 0);
+    struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
     double rho = 0.0, w[3] = {middle.x, middle.y, middle.z};
     struct rgb other = m->emission, mesh = {{0.0, 0.0, 0.0}};
     if (!whole) {
-        double at[3] = {w[0], w[1], w[2]};
-        int32_t leaf = shading_leaf_at(shading, view->roots[0], at);
-        if (!contact_at(gather, shading, leaf, at, &other))
-            other = shading_at(shading, shading->values, view->roots[0], w);
+        other = shading_at(shading, shading->values, view->roots[0], w);
         mesh = shading_at(shading, shading->lamps, view->roots[0], w);
     }
     for (int c = 0; c < BANDS; c++) {

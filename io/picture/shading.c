@@ -401,12 +401,9 @@ static struct shading *allocate(const struct forest *forest)
     struct shading *shading = alloc_array(1, sizeof *shading);
     size_t patches = (size_t)forest->count;
     shading->forest = forest;
-    shading->patch_count = forest->count;
     shading->corners = alloc_array(3 * patches, sizeof *shading->corners);
     shading->divided = alloc_array(patches, sizeof *shading->divided);
     shading->shades = alloc_array(patches, sizeof *shading->shades);
-    shading->seen = alloc_array(patches, sizeof *shading->seen);
-    shading->tiles = alloc_array(patches, sizeof *shading->tiles);
     shading->vertices = alloc_array(1, sizeof *shading->vertices);
     return shading;
 }
@@ -434,10 +431,6 @@ void shading_destroy(struct shading *shading)
 {
     if (!shading)
         return;
-    for (int64_t p = 0; p < shading->patch_count; p++)
-        alloc_free(shading->tiles[p]);
-    alloc_free(shading->tiles);
-    alloc_free(shading->seen);
     vertices_free(shading->vertices);
     alloc_free(shading->vertices);
     alloc_free(shading->values);

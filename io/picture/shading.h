@@ -17,7 +17,6 @@ enum shade {
 
 struct shading {
     const struct forest *forest; /* borrowed */
-    int64_t patch_count;         /* of the forest */
     bool flat;                   /* each leaf has its constant radiosity */
     int32_t *corners;            /* [3 * forest->count] vertex of p, k: [3 p + k] */
     struct vec3 *positions;      /* [vertex_count] scene units */
@@ -27,8 +26,6 @@ struct shading {
     int64_t own_count;           /* vertices before those of a sky */
     bool *divided;               /* [forest->count] leaf with T-vertices */
     uint8_t *shades;             /* [forest->count] enum shade of a leaf */
-    bool *seen;                  /* [patches] `tiles` are known, by contact.h */
-    struct rgb **tiles;          /* [patches] light at corners, W/m^2; NULL: no contact */
     struct vertices *vertices;   /* finds vertices; owns positions */
 };
 

@@ -187,47 +187,6 @@ static void test_specks(void)
     solution_free(&s);
 }
 
-/* --- contacts --- */
-
-/* A block on the floor of a room, whose front is away from the lamp. In its shade light
- * falls off towards the foot, within leaves. Beside light that is gathered by many rays
- * at each point. */
-static void test_contact(void)
-{
-    struct soup soup = {0};
-    soup_add_quad(&soup, point(-0.3, -0.3, 0), point(0.6, 0, 0), point(0, 0, 0.4), 1);
-    soup_add_box(&soup, point(-0.299, -0.299, 0), point(0.3, 0.3, 0.4), 1, false);
-    soup_add_box(&soup, point(-1.5, -1.5, 0), point(1.5, 1.5, 2), 1, true);
-    paint(&soup, 0.7, 0.0);
-    soup_add_quad(&soup, point(-0.3, 0.2, 1.99), point(0, 0.6, 0), point(0.6, 0, 0), 1);
-    paint(&soup, 0.0, 100.0);
-    struct solution s = solve_soup(&soup, "--epsilon 2e-2 --final-gather 256");
-    struct shading *shading = shade_rest(&s);
-    struct renderer exact =
-        renderer_make(s.octree, NULL, s.solver->beyond->answer->gather);
-    exact.rays = 8192;
-    double sum = 0.0, truth = 0.0, worst = 0.0;
-    for (int i = 0; i < 24; i++) {
-        struct vec3 at = point(0.02 * (i % 6) - 0.05, -0.3, 0.01 + 0.01 * (i / 6));
-        struct vec3 x = scene_from_input(s.scene, at);
-        double weight[3], value = shown(&s, shading, 0, at);
-        int32_t root = -1;
-        do {
-            struct triangle t = scene_root_triangle(s.scene, ++root);
-            triangle_weights(&t, x, weight);
-        } while (root == 0 && fmin(weight[0], fmin(weight[1], weight[2])) < 0.0);
-        double right = render_point(&exact, root, weight, 1).band[0];
-        worst = fmax(worst, fabs(value / right - 1.0));
-        sum += value;
-        truth += right;
-    }
-    tap_ok(fabs(sum / truth - 1.0) <= 0.1,
-           "at the foot of a block light is %.3f of the right, points off by %.2f",
-           sum / truth, worst);
-    shading_destroy(shading);
-    solution_free(&s);
-}
-
 /* --- all light --- */
 
 /* Everything shines as it absorbs: B = 1 at every point, in corners and gaps too. */
@@ -626,7 +585,6 @@ int main(int argc, char **argv)
     test_noise();
     test_deviation();
     test_specks();
-    test_contact();
     test_furnace();
     test_strip(0.05, true);
     test_strip(0.3, false);

@@ -60,11 +60,11 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
                           int segments, bool exact);
 
-/* Returns the light at points, for the radiosities of the forest: by segments to lamps,
- * at least 1, and so many rays for the rest; 0: without it. */
+/* Returns the light at points, for the radiosities of the forest: by `count` segments to
+ * lamps, and, if `all`, `count` rays for the rest. */
 struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
-                                    int segments, int rays);
+                                    int count, bool all);
 
 /* The work of this rank so far, proofs included, in tests. */
 int64_t final_gather_work(const struct final_gather *gather);

@@ -88,7 +88,7 @@ void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
 
 struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
-                                    int segments, int rays)
+                                    int count, bool all)
 {
     struct vec3 x = points->middle;
     struct facet facet = {.triangle = {{x, x, x}},
@@ -98,12 +98,11 @@ struct gather_light final_gather_at(struct final_gather *gather,
     find_leaf(gather->model->forest, &point);
     struct gather_row row = {.leaf = point.patch};
     struct ray_sums sums = {.each = NULL};
-    struct receiver r = receiver_make(gather, facet, hash_mix(seed), rays, &row, &sums);
+    struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
     struct gather_light light = {.variance = 0.0};
     r.points = points;
-    r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
     receiver_aim(&r);
-    if (rays > 0)
+    if (all)
         receiver_fire(&r);
     for (int c = 0; c < BANDS; c++)
         light.variance += row.chance[c];

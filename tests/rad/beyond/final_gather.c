@@ -258,7 +258,7 @@ static double light_of_floor(int parts)
                                    .root = last};
     double light = 0.0;
     for (uint64_t seed = 0; seed < SEEDS; seed++)
-        light += final_gather_at(g.gather, &points, seed, 1024, 1024).rest.band[0];
+        light += final_gather_at(g.gather, &points, seed, 1024, true).rest.band[0];
     trial_free(&g);
     return light / SEEDS;
 }

@@ -182,10 +182,10 @@ static void judge_pixel(struct trial *g, int32_t root, struct vec3 weights,
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(g->s.scene, root),
                                    .root = root};
-    double truth = final_gather_at(g->gather, &points, RUNS, MORE, MORE).rest.band[0];
+    double truth = final_gather_at(g->gather, &points, RUNS, MORE, true).rest.band[0];
     double mean = 0.0, squares = 0.0, most = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
-        double h = final_gather_at(g->gather, &points, run, RAYS, RAYS).rest.band[0];
+        double h = final_gather_at(g->gather, &points, run, RAYS, true).rest.band[0];
         mean += h / RUNS;
         squares += h * h / RUNS;
         most = fmax(most, h);
@@ -342,7 +342,7 @@ static void test_window(bool sill)
     double exact = point_polygon_factor(floor, z, window, 4), sum = 0.0, squares = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
         struct rgb h =
-            final_gather_at(g.gather, &points, run, SEGMENTS, 0).lamps;
+            final_gather_at(g.gather, &points, run, SEGMENTS, false).lamps;
         double off = h.band[0] / exact - 1.0;
         sum += off / RUNS;
         squares += off * off / RUNS;
@@ -361,7 +361,7 @@ static double sum_of_runs(struct trial *g, const struct gather_points *points,
 {
     double sum = 0.0;
     for (uint64_t run = 0; run < 32; run++)
-        sum += final_gather_at(g->gather, points, run, segments, 0).lamps.band[0];
+        sum += final_gather_at(g->gather, points, run, segments, false).lamps.band[0];
     return sum;
 }
 
@@ -393,7 +393,7 @@ static void test_sky_behind_window(void)
            "the lamps that a leaf sees are the same whoever asks first");
     for (uint64_t run = 0; run < RUNS; run++) {
         struct gather_light light =
-            final_gather_at(g.gather, &points, run, SEGMENTS, 0);
+            final_gather_at(g.gather, &points, run, SEGMENTS, false);
         double off = light.lamps.band[0] / exact - 1.0;
         sum += off / RUNS;
         square += off * off / RUNS;
