@@ -112,7 +112,8 @@ void irradiance_make(struct run *run, struct irradiance *found)
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
         if (!scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root) &&
-            !take_reflected(run, leaf, found))
+            !take_reflected(run, leaf, found) &&
+            !material_emits(forest_material(forest, leaf)))
             unknown.leaves[unknown.count++] = leaf;
     float *read = irradiance_deal(run, unknown.count, LEAF_FLOATS, read_leaf, &unknown);
     size_t bytes = (size_t)unknown.count * LEAF_FLOATS * sizeof *read;

@@ -16,7 +16,7 @@ struct irradiance {
 };
 
 /* Collective. Finds H of all leaves, on all ranks: where all bands are reflected it is
- * (B - E) / rho, else a meter's, at four points of the leaf. */
+ * (B - E) / rho, else a meter's, at four points of the leaf, and 0 of a black lamp. */
 void irradiance_make(struct run *run, struct irradiance *found);
 
 /* Returns H at the vertices of the run's shading: (B - E) / rho, or the mean of leaves
