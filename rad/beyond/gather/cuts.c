@@ -22,8 +22,8 @@
 enum { REGION_LEAVES = 64, PILOTS = 16 };
 
 /* Of segments dealt blindly the part to all light of another space. A smaller part makes
- * light that does come through a narrow gap rare and bright: 1/64 has four times the
- * error in a room with a lamp whose door is ajar below a sky. */
+ * light rare and bright that comes from there through a gap which no ray has found: with
+ * 1/64 the error was four times as large. */
 static const double ELSEWHERE = 0.25;
 
 /* A node is small if its radius is at most this part of its distance. */
