@@ -173,10 +173,10 @@ static void send_links(struct solver *solver, int64_t first, int *to)
 void solver_settle_links(struct solver *solver)
 {
     const struct comm *comm = solver->comm;
-    double start = comm_seconds();
     int64_t most = 0, all = 0;
     if (comm->size == 1)
         return;
+    account_begin(&solver->account, PHASE_MIGRATION);
     send_links(solver, solver->turn.settled, choose_homes(solver));
     link_list_sort(&solver->links);
     int64_t *loads = comm_gather_each(comm, &solver->links.seen, sizeof *loads);
@@ -189,7 +189,7 @@ void solver_settle_links(struct solver *solver)
         send_links(solver, 0, choose_leaving(solver, loads));
     solver->turn.settled = solver->links.count;
     alloc_free(loads);
-    solver->account.seconds[PHASE_MIGRATION] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_MIGRATION);
 }
 
 void homes_renew(struct solver *solver)
@@ -218,11 +218,11 @@ void solver_deal_roots(struct solver *solver, int *owner)
 
 void solver_assign_roots(struct solver *solver)
 {
-    double start = comm_seconds();
     struct homes *homes = &solver->homes;
+    account_begin(&solver->account, PHASE_LINKING);
     solver->steps.deal(solver, homes->owner);
     for (int32_t root = 0; root < solver->model.forest->root_count; root++)
         homes->own[root] = homes->owner[root] == solver->comm->rank;
-    solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_LINKING);
     solver_settle_links(solver);
 }

@@ -28,11 +28,11 @@ double solver_largest(const struct solver *solver, const struct rgb *vector)
 /* No patch receives more than all surfaces send where B is largest. */
 void solver_transfer(struct solver *solver, const struct rgb *vector)
 {
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SOLVE);
     solver->flux =
         flux_unit_for(solver_largest(solver, vector) * solver->model.whole_area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
-    solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SOLVE);
 }
 
 /* --- step 5 --- */
@@ -51,10 +51,10 @@ static int64_t *flux_of(const struct solver *solver, int32_t node)
 /* Collective. Own nodes get the flux of all their proxies. */
 static void bring_home(struct solver *solver)
 {
-    double start = comm_seconds();
     const struct route *from = &solver->routes.proxies, *to = &solver->routes.originals;
     struct account *account = &solver->account;
     int64_t messages = comm_counts().messages;
+    account_begin(account, PHASE_GATHER);
     struct wire_flux *out = alloc_array((size_t)from->count, sizeof *out);
     struct wire_flux *in = alloc_array((size_t)to->count, sizeof *in);
     for (int64_t i = 0; i < from->count; i++)
@@ -68,7 +68,7 @@ static void bring_home(struct solver *solver)
     account->messages[CARGO_FLUX] += comm_counts().messages - messages;
     alloc_free(in);
     alloc_free(out);
-    account->seconds[PHASE_GATHER] += comm_seconds() - start;
+    account_end(account, PHASE_GATHER);
 }
 
 void solver_carry(struct solver *solver, const struct rgb *vector)
@@ -100,15 +100,46 @@ void solver_carry_ones(struct solver *solver)
 void solver_gather(struct solver *solver)
 {
     if (solver->turn.fresh) {
-        double start = comm_seconds();
+        account_begin(&solver->account, PHASE_SOLVE);
         link_list_sort(&solver->links);
-        solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
-        start = comm_seconds();
+        account_end(&solver->account, PHASE_SOLVE);
+        account_begin(&solver->account, PHASE_ROUTES);
         routes_renew(solver);
-        solver->account.seconds[PHASE_ROUTES] += comm_seconds() - start;
+        account_end(&solver->account, PHASE_ROUTES);
         if (solver->steps.begin)
             solver->steps.begin(solver);
     }
     solver->turn.fresh = false;
     solver_carry(solver, solver->model.forest->radiosity);
+}
+
+/* No part of the method: the transfer leaves no trace in the accounts. */
+void solver_measure_row_sums(struct solver *solver, struct stats *stats)
+{
+    const struct comm *comm = solver->comm;
+    account_begin(&solver->account, PHASE_ROW_SUMS);
+    struct account before = solver->account;
+    link_list_sort(&solver->links); /* those of a finished, resumed run are not */
+    routes_renew(solver);
+    solver_carry_ones(solver);
+    solver->account = before;
+    struct row_sums own =
+        row_sums_measure(solver->model.forest, solver->homes.own, solver->flux);
+    struct row_sums *all = comm_gather_each(comm, &own, sizeof own);
+    struct row_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    for (int r = 0; r < comm->size; r++) {
+        sum.min = fmin(sum.min, all[r].min);
+        sum.max = fmax(sum.max, all[r].max);
+        sum.area = flux_add(sum.area, all[r].area);
+        sum.rows = flux_add(sum.rows, all[r].rows);
+        sum.squares = flux_add(sum.squares, all[r].squares);
+    }
+    alloc_free(all);
+    double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count */
+    bool any = sum.min <= sum.max;
+    stats->row_sum_min = any ? sum.min : 0.0;
+    stats->row_sum_max = any ? sum.max : 0.0;
+    stats->row_sum_mean = (double)sum.rows / area;
+    stats->row_sum_rms = sqrt((double)sum.squares / area);
+    account_end(&solver->account, PHASE_ROW_SUMS);
 }

@@ -46,11 +46,11 @@ static int64_t exchange_notices(struct solver *solver)
 {
     const struct comm *comm = solver->comm;
     struct linking_notice own = {.links = solver->links.count, .stop = signals_seen()};
-    double start = comm_seconds();
+    account_end(&solver->account, PHASE_LINKING);
+    account_begin(&solver->account, PHASE_IDLE);
     struct linking_notice *notices = comm_gather_each(comm, &own, sizeof own);
-    double idle = comm_seconds() - start;
-    solver->account.seconds[PHASE_IDLE] += idle;
-    solver->account.seconds[PHASE_LINKING] -= idle;
+    account_end(&solver->account, PHASE_IDLE);
+    account_begin(&solver->account, PHASE_LINKING);
     int64_t links = 0;
     for (int r = 0; r < comm->size; r++) {
         links += notices[r].links;
@@ -120,12 +120,12 @@ static bool link_pairs(struct solver *solver, const int32_t *roots, int64_t coun
 bool solver_link_roots(struct solver *solver)
 {
     struct model *model = &solver->model;
-    double start = comm_seconds();
     if (model->method.first_link) {
         if (solver->comm->rank == 0) /* the first levels deal its children */
             link_list_append(&solver->links, model->method.first_link());
         return true;
     }
+    account_begin(&solver->account, PHASE_LINKING);
     int64_t before = model_work(model), count = 0;
     int32_t *roots = alloc_array((size_t)model->forest->root_count, sizeof *roots);
     for (int32_t root = 0; root < model->forest->root_count; root++)
@@ -133,10 +133,10 @@ bool solver_link_roots(struct solver *solver)
             roots[count++] = root;
     bool done = link_pairs(solver, roots, count);
     alloc_free(roots);
-    struct phase_work phase = {.kind = WORK_LINKING,
-                               .share.links = solver->links.count,
-                               .share.done = model_work(model) - before};
-    ledger_add(&solver->account.ledger, phase);
-    solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
+    ledger_add(&solver->account.ledger,
+               (struct phase_work){.kind = WORK_LINKING,
+                                   .share = {.links = solver->links.count,
+                                             .done = model_work(model) - before}});
+    account_end(&solver->account, PHASE_LINKING);
     return done;
 }

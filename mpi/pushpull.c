@@ -27,7 +27,7 @@ void solver_push_pull_jacobi(struct solver *solver)
 
 void solver_push_pull(struct solver *solver)
 {
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_PUSH_PULL);
     solver->turn.iteration++;
     solver->steps.push_pull(solver);
     solver->turn.complete = solver->comm->size == 1;
@@ -35,5 +35,5 @@ void solver_push_pull(struct solver *solver)
     solver->ballot.links = solver->links.count;
     solver->ballot.divided = own_new_patches(solver);
     solver->ballot.stop = signals_seen();
-    solver->account.seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_PUSH_PULL);
 }

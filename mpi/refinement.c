@@ -34,7 +34,6 @@ struct level {
     struct level_counts all; /* sums over ranks; `stop`: the largest */
     int64_t *loads;          /* [ranks] predicted work of each before links move */
     struct phase_work phase;
-    double start;            /* of splitting, seconds */
     int64_t work;            /* of this rank before the splits, tests */
 };
 
@@ -69,9 +68,9 @@ static void exchange_loads(struct solver *solver, const struct link_list *prolif
 {
     const struct comm *comm = solver->comm;
     struct level_counts own = count_level(solver, prolific), *all = &level->all;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_IDLE);
     struct level_counts *each = comm_gather_each(comm, &own, sizeof own);
-    solver->account.seconds[PHASE_IDLE] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_IDLE);
     *all = (struct level_counts){0};
     for (int r = 0; r < comm->size; r++) {
         level->loads[r] = each[r].load;
@@ -93,7 +92,7 @@ static void share_splits(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
     const struct comm *comm = solver->comm;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SCATTER);
     int64_t count = 0;
     int64_t made = forest->count - solver->turn.shared;
     struct patch_id *split = alloc_array((size_t)made / 4, sizeof *split);
@@ -112,7 +111,7 @@ static void share_splits(struct solver *solver)
     alloc_free(all);
     alloc_free(at);
     alloc_free(split);
-    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SCATTER);
 }
 
 /* A link being split and its four children. */
@@ -170,7 +169,7 @@ static int *deal_links(const struct solver *solver, const struct link_list *prol
 static void load_balance(struct solver *solver, struct link_list *prolific,
                          struct level *level)
 {
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_MIGRATION);
     struct level_share *share = &level->phase.share;
     share->load = level->loads[solver->comm->rank];
     if (DEALINGS[solver->model.criterion.balance] && solver->comm->size > 1) {
@@ -183,9 +182,9 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
     }
     solver_learn(solver, prolific);
     share->predicted = load_of_all(prolific);
-    level->start = comm_seconds();
     level->work = model_work(&solver->model);
-    solver->account.seconds[PHASE_MIGRATION] += level->start - start;
+    account_end(&solver->account, PHASE_MIGRATION);
+    account_begin(&solver->account, PHASE_REFINEMENT);
 }
 
 /* --- step 4 --- */
@@ -193,13 +192,14 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
 /* Begins a pass: renews the bounds on light for refinement. */
 static void begin_pass(struct solver *solver)
 {
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_REFINEMENT);
+    account_begin(&solver->account, PHASE_PREPARE);
     if (solver->model.method.prepare) {
         solver_complete(solver);
         solver->model.method.prepare(&solver->model);
     }
-    solver->account.seconds[PHASE_PREPARE] += comm_seconds() - start;
-    solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_PREPARE);
+    account_end(&solver->account, PHASE_REFINEMENT);
     solver->turn.pass++;
     solver->turn.fresh = true;
     solver->turn.split_here = 0;
@@ -236,7 +236,7 @@ static void end_level(struct solver *solver, struct link_list *prolific,
     link_list_free(prolific);
     *prolific = *next;
     *next = (struct link_list){0};
-    solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - level->start;
+    account_end(&solver->account, PHASE_REFINEMENT);
 }
 
 /* Evaluates a link: true if it should be subdivided. */
@@ -251,8 +251,9 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     struct model *model = &solver->model;
     int64_t kept = 0;
-    double start = comm_seconds();
-    struct phase_work looks = {.kind = WORK_LOOKS, .share.done = solver->links.count};
+    account_begin(&solver->account, PHASE_REFINEMENT);
+    account_begin(&solver->account, PHASE_LOOKS);
+    account_work(&solver->account, WORK_LOOKS, solver->links.count, 0);
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
         if (is_prolific(solver, &link)) {
@@ -264,9 +265,8 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         solver->links.items[kept++] = link;
     }
     solver->links.count = solver->turn.settled = kept;
-    ledger_add(&solver->account.ledger, looks);
-    solver->account.seconds[PHASE_LOOKS] += comm_seconds() - start;
-    solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_LOOKS);
+    account_end(&solver->account, PHASE_REFINEMENT);
 }
 
 /* Collective. Algorithm 1, its lines as comments: `solver->links` are allInteractions,

@@ -243,25 +243,25 @@ static void extend_whole(struct solver *solver)
 void solver_complete(struct solver *solver)
 {
     struct routes *whole = &solver->whole;
-    double start = comm_seconds();
     if (solver->turn.complete)
         return;
+    account_begin(&solver->account, PHASE_SCATTER);
     if (whole->trees > 0)
         send_values(solver, &whole->originals, &whole->proxies, CARGO_WHOLE);
     if (whole->trees < solver->model.forest->count)
         extend_whole(solver);
     forest_average(solver->model.forest);
     solver->turn.complete = true;
-    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SCATTER);
 }
 
 /* --- step 7 --- */
 
 void solver_renew_proxies(struct solver *solver)
 {
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SCATTER);
     send_values(solver, &solver->routes.originals, &solver->routes.proxies, CARGO_LIGHT);
-    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SCATTER);
 }
 
 void solver_scatter(struct solver *solver)

@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 #include "geom/progress.h"
+#include "mpi/account.h"
 #include "mpi/comm.h"
-#include "mpi/ledger.h"
 #include "mpi/memory.h"
 #include "mpi/node.h"
 #include "rad/link.h"
@@ -64,7 +64,6 @@ struct routes {
     int64_t trees;          /* patches there were when all leaves got proxies */
 };
 
-
 /* Where the run is. */
 struct turn {
     int64_t pass;       /* refinements so far */
@@ -76,19 +75,6 @@ struct turn {
     bool complete;      /* all ranks know the radiosities of all patches */
     bool fresh;         /* links have changed since the last transfer */
     int stop;           /* signal of some rank, 0: none; the same on all */
-};
-
-/* The accounts of this rank, for the report. */
-struct account {
-    double seconds[PHASE_COUNT];
-    int64_t bytes[CARGO_COUNT];    /* to or from other ranks */
-    int64_t messages[CARGO_COUNT]; /* as in struct comm_counts */
-    int64_t copied;          /* patch records packed or unpacked */
-    int64_t recorded[3];     /* of the last three, in the ledger */
-    int64_t leaves;          /* at home here, in the last push-pull */
-    int64_t held;            /* proxies of this rank */
-    struct ledger ledger;
-    int64_t *proxies;        /* [ranks] see struct stats */
 };
 
 struct beyond; /* mpi/beyond/beyond.h */

@@ -54,20 +54,13 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 /* Enters the work of the iteration into the ledger. */
 static void record_iteration(struct solver *solver)
 {
-    int64_t now[] = {solver->account.bytes[CARGO_FLUX],
-                     solver->account.bytes[CARGO_LIGHT], solver->account.copied};
-    struct phase_work phase = {.kind = WORK_TRANSFER,
-                               .share.done = solver->links.seen,
-                               .bytes = now[0] - solver->account.recorded[0]};
-    ledger_add(&solver->account.ledger, phase);
-    phase = (struct phase_work){.kind = WORK_OWN,
-                                .share.done = solver->account.leaves,
-                                .bytes = now[1] - solver->account.recorded[1]};
-    ledger_add(&solver->account.ledger, phase);
-    phase = (struct phase_work){.kind = WORK_PATCHES,
-                                .share.done = now[2] - solver->account.recorded[2]};
-    ledger_add(&solver->account.ledger, phase);
-    memcpy(solver->account.recorded, now, sizeof now);
+    struct account *account = &solver->account;
+    int64_t now[] = {account->bytes[CARGO_FLUX], account->bytes[CARGO_LIGHT],
+                     account->copied}, *before = account->recorded;
+    account_work(account, WORK_TRANSFER, solver->links.seen, now[0] - before[0]);
+    account_work(account, WORK_OWN, account->leaves, now[1] - before[1]);
+    account_work(account, WORK_PATCHES, now[2] - before[2], 0);
+    memcpy(before, now, sizeof now);
 }
 
 struct vote solver_vote(struct solver *solver)

@@ -136,10 +136,8 @@ struct stats {
     double touching_power; /* emitted and absorbed between touching faces */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
-    int64_t links_open;    /* links proved to be open; with the next three, all links */
-    int64_t links_seen;    /* links without proof whose segments all arrived */
-    int64_t links_partly;  /* links some of whose segments arrived */
-    int64_t links_unseen;  /* links none of whose segments arrived */
+    int64_t links_of[4];   /* links proved to be open; of the others, those all, some and
+                              none of whose segments arrived */
     int64_t walled_off;    /* links that ended by a proof of a wall */
     struct gathered gathered;
     int64_t rays_spared;   /* rays not fired, of 16 for each link ever made */

@@ -109,13 +109,13 @@ static struct shading *shade_leaves(struct run *run, const struct irradiance *ir
     const struct answer *answer = beyond_answer(run->solver);
     const struct rgb *straight = irradiance ? irradiance->straight : answer->straight;
     const float *error = irradiance ? irradiance->error : answer->error;
-    double start = comm_seconds();
+    account_begin(&run->solver->account, PHASE_SHADING);
     struct shading *shading =
         run->options.flat
             ? shading_create_flat(forest)
             : shading_create(forest, run->octree, rest ? straight : NULL,
                              rest ? error : NULL, answer->outside);
-    run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_SHADING);
     return shading;
 }
 
@@ -123,11 +123,11 @@ static struct shading *shade_leaves(struct run *run, const struct irradiance *ir
 static void place_camera(struct run *run)
 {
     struct camera *camera = run->cameras;
-    double start = comm_seconds();
+    account_begin(&run->solver->account, PHASE_VIEWPOINT);
     input_say_up(run);
     *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
                                camera->width, camera->height);
-    run->solver->account.seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_VIEWPOINT);
 }
 
 /* Collective. Returns the picture of a camera on rank 0, NULL on the others. */
@@ -145,18 +145,18 @@ static float *make_picture(struct run *run, const struct renderer *renderer,
  * signal, on all ranks. */
 static bool show_views(struct run *run, const struct renderer *renderer)
 {
-    double *seconds = run->solver->account.seconds;
+    struct account *account = &run->solver->account;
     run->exposures = alloc_array((size_t)run_camera_count(run), sizeof *run->exposures);
     for (int view = 0; view < run_camera_count(run); view++) {
-        double start = comm_seconds();
+        account_begin(account, PHASE_RENDER);
         float *picture = make_picture(run, renderer, &run->cameras[view]);
         bool good = run_goes_on(run) && show_overlay(run, &run->cameras[view], picture);
-        double made = comm_seconds();
-        seconds[PHASE_RENDER] += made - start;
+        account_end(account, PHASE_RENDER);
+        account_begin(account, PHASE_WRITE);
         if (good && run->comm.rank == 0)
             write_pictures(run, view, picture);
         alloc_free(picture);
-        seconds[PHASE_WRITE] += comm_seconds() - made;
+        account_end(account, PHASE_WRITE);
         if (!run_agree(run))
             return false;
     }
@@ -170,7 +170,7 @@ static bool show_pictures(struct run *run)
     struct model *model = &run->solver->model;
     struct octree_counts counts = model->counts;
     int64_t estimating = model->estimating;
-    double start = comm_seconds();
+    account_begin(&run->solver->account, PHASE_RENDER);
     if (run->options.view_count == 0)
         place_camera(run);
     struct answer *answer = run->solver->beyond ? run->solver->beyond->answer : NULL;
@@ -196,7 +196,7 @@ static bool show_pictures(struct run *run)
         renderer.rays = run->options.pixel_rays;
     if (gathers)
         answer->gather->counts = (struct gather_counts){.rays = 0};
-    run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_RENDER);
     bool good = show_views(run, &renderer);
     if (gathers) {
         answer->counts.pixels =
@@ -215,7 +215,7 @@ static bool show_pictures(struct run *run)
 /* Collective. Rank 0 alone shades and writes. */
 static bool show_meshes(struct run *run)
 {
-    double start = comm_seconds();
+    account_begin(&run->solver->account, PHASE_WRITE);
     struct irradiance irradiance;
     irradiance_make(run, &irradiance);
     struct shading *shading =
@@ -226,7 +226,7 @@ static bool show_meshes(struct run *run)
     alloc_free(at);
     shading_destroy(shading);
     irradiance_free(&irradiance);
-    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_WRITE);
     return run_agree(run);
 }
 

@@ -37,7 +37,6 @@ static void lose(struct run *run, const struct error *error)
 
 bool stored_save(struct run *run, enum store_kind kind, const char *path)
 {
-    double start = comm_seconds();
     struct store_terms terms = terms_of(run, kind);
     struct store_writer writer;
     struct snapshot snapshot;
@@ -48,6 +47,7 @@ bool stored_save(struct run *run, enum store_kind kind, const char *path)
         lose(run, &error);
         return true;
     }
+    account_begin(&run->solver->account, PHASE_WRITE);
     snapshot_collect(run->solver, &run->vote, &snapshot);
     if (run->comm.rank == 0)
         store_create(&writer, path, &terms, &snapshot, &error);
@@ -57,7 +57,7 @@ bool stored_save(struct run *run, enum store_kind kind, const char *path)
         if (run->comm.rank == 0)
             store_finish(&writer, &error);
     }
-    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_WRITE);
     if (comm_agree(&run->comm, &error) && kind == STORE_CHECKPOINT)
         run->kept = path;
     lose(run, &error);
@@ -107,12 +107,12 @@ static void warn_of_rays(struct run *run, int asked)
 
 bool stored_load(struct run *run, enum store_kind kind, const char *path)
 {
-    double start = comm_seconds();
     int asked = run->solver->model.criterion.final_gather;
     struct store_terms terms = terms_of(run, kind);
     struct store_reader reader = {0};
     if (!run_goes_on(run)) /* a tree ended by a signal is not the file's */
         return false;
+    account_begin(&run->solver->account, PHASE_LINKING);
     if (run->comm.rank == 0) {
         signals_end_calls(true); /* of a pipe, too */
         store_open(&reader, path, &terms, &run->error);
@@ -132,7 +132,7 @@ bool stored_load(struct run *run, enum store_kind kind, const char *path)
                 (long long)reader.snapshot.link_count, (long long)run->solver->turn.pass,
                 comm_seconds() - run->start);
     store_close(&reader);
-    run->solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
+    account_end(&run->solver->account, PHASE_LINKING);
     return good;
 }
 

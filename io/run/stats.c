@@ -126,8 +126,8 @@ static void write_counts(FILE *file, const struct stats *stats)
             "  \"visibility\": {\"open\": %" PRId64 ", \"seen\": %" PRId64
             ", \"partly\": %" PRId64 ", \"unseen\": %" PRId64 ", \"walled_off\": %" PRId64
             ", \"rays_spared\": %" PRId64 "},\n",
-            stats->links_open, stats->links_seen, stats->links_partly,
-            stats->links_unseen, stats->walled_off, stats->rays_spared);
+            stats->links_of[0], stats->links_of[1], stats->links_of[2],
+            stats->links_of[3], stats->walled_off, stats->rays_spared);
     fprintf(file,
             "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64
             ", \"exact\": %" PRId64 ", \"terms\": %" PRId64 ", \"looks\": %" PRId64

@@ -64,13 +64,13 @@ void above_create(struct solver *solver)
     const struct comm *comm = solver->comm;
     const struct scene *scene = solver->model.scene;
     struct beyond *beyond = solver->beyond;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SPACES);
     beyond->branches = alloc_array(1, sizeof *beyond->branches);
     int32_t *met = solver->model.octree ? places_gather(comm, scene, solver->model.octree)
                                         : NULL;
     beyond->spaces = spaces_create(scene, met);
     alloc_free(met);
-    solver->account.seconds[PHASE_SPACES] = comm_seconds() - start;
+    account_end(&solver->account, PHASE_SPACES);
     beyond->tree_block =
         tree_broadcast(comm, node_policy(), scene, beyond->spaces, &beyond->tree);
     solver->account.seconds[PHASE_TREE] = beyond->tree_block.seconds;
@@ -211,12 +211,12 @@ void above_begin(struct solver *solver, const struct rgb *vector)
 {
     struct cluster_light *light = solver->model.clusters;
     const struct branches *branches = solver->beyond->branches;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SUMS);
     if (solver->turn.complete || vector != solver->model.forest->radiosity)
         cluster_light_average(light, solver->model.forest, vector, light->sent);
     clear_flux(light, branches->top, branches->top_count);
     clear_flux(light, branches->own, branches->own_count);
-    solver->account.seconds[PHASE_SUMS] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SUMS);
 }
 
 /* Collective. Sums the flux of the clusters above the branches. */
@@ -241,15 +241,15 @@ void above_collect(struct solver *solver)
     struct forest *forest = solver->model.forest;
     struct cluster_light *light = solver->model.clusters;
     const struct branches *branches = solver->beyond->branches;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_GATHER);
     add_top(solver);
-    double come = comm_seconds();
+    account_end(&solver->account, PHASE_GATHER);
+    account_begin(&solver->account, PHASE_SUMS);
     for (int32_t i = 0; i < branches->top_count; i++)
         cluster_light_push(light, forest, solver->flux, branches->top[i]);
     for (int32_t i = 0; i < branches->own_count; i++)
         cluster_light_push(light, forest, solver->flux, branches->own[i]);
-    solver->account.seconds[PHASE_GATHER] += come - start;
-    solver->account.seconds[PHASE_SUMS] += comm_seconds() - come;
+    account_end(&solver->account, PHASE_SUMS);
 }
 
 /* --- step 7 --- */
@@ -288,13 +288,14 @@ static void share_branches(struct solver *solver)
 void above_scatter(struct solver *solver)
 {
     const struct branches *branches = solver->beyond->branches;
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SUMS);
     average(solver, branches->own, branches->own_count);
-    double ready = comm_seconds();
+    account_end(&solver->account, PHASE_SUMS);
+    account_begin(&solver->account, PHASE_SCATTER);
     share_branches(solver);
-    double come = comm_seconds();
+    account_end(&solver->account, PHASE_SCATTER);
+    account_begin(&solver->account, PHASE_SUMS);
     average(solver, branches->top, branches->top_count);
-    solver->account.seconds[PHASE_SUMS] += ready - start + comm_seconds() - come;
-    solver->account.seconds[PHASE_SCATTER] += come - ready;
+    account_end(&solver->account, PHASE_SUMS);
     solver_renew_proxies(solver);
 }

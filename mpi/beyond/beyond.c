@@ -7,11 +7,11 @@
 static void transfer(struct solver *solver, const struct rgb *vector)
 {
     above_begin(solver, vector);
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_SOLVE);
     double largest = 2.0 * solver_largest(solver, vector);
     solver->flux = flux_unit_for(largest * solver->model.whole_area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
-    solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SOLVE);
 }
 
 static void report(const struct solver *solver, struct stats *stats)

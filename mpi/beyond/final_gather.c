@@ -242,15 +242,14 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
 static void find_shown(struct gathering *g, const struct rgb *b)
 {
     const struct final_gather *gather = g->gather;
-    double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
     place_radiosities(g, b);
     see_bare_parts(g, b, true);
     final_gather_pull(gather, g->radiosity);
-    *seconds -= comm_seconds();
+    account_begin(&g->solver->account, PHASE_PRODUCTS);
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
-    *seconds += comm_seconds();
+    account_end(&g->solver->account, PHASE_PRODUCTS);
     add_up(g, watts, BANDS * g->near_count);
     for (int64_t k = 0; k < g->near_count; k++) {
         int64_t i = g->near[k].leaf;
@@ -326,7 +325,6 @@ static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
-    double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     place_radiosities(g, b);
     see_bare_parts(g, b, lamps);
@@ -336,10 +334,10 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
             g->radiosity[place].band[c] *= g->near[k].shown.band[c];
     }
     final_gather_pull(g->gather, g->radiosity);
-    *seconds -= comm_seconds();
+    account_begin(&g->solver->account, PHASE_PRODUCTS);
     for (int64_t row = 0; row < g->gather->count; row++)
         own[row] = final_gather_irradiance(g->gather, row, g->radiosity, lamps);
-    *seconds += comm_seconds();
+    account_end(&g->solver->account, PHASE_PRODUCTS);
     gathering_share_rows(g, h);
     if (g->balanced)
         close_balance(g, b, lamps, h);
@@ -642,18 +640,18 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
     struct gather_mesh mesh = {.count = 0};
     struct stages stages = {.count = 0};
     struct gathering g = {.solver = solver, .mesh = &mesh, .stages = &stages};
-    double start = comm_seconds();
+    account_begin(&solver->account, PHASE_FINAL_GATHER);
+    account_begin(&solver->account, PHASE_ROWS);
     bool done = gather_mesh_make(solver, vote->links, &mesh);
     if (done) {
         gathering_start(&g, solver);
         done = make_rows(&g);
     }
-    solver->account.seconds[PHASE_ROWS] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_ROWS);
     if (done)
         solve_rows(&g, vote);
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER, .bytes = g.bytes});
+    account_work(&solver->account, WORK_FINAL_GATHER, 0, g.bytes);
     gathering_end(&g);
-    solver->account.seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_FINAL_GATHER);
     return done;
 }

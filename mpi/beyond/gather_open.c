@@ -68,9 +68,8 @@ uint8_t *gather_find_open_roots(struct solver *solver, struct final_gather *gath
         half_is_open(solver, gather, sorted, true, found))
         for (int32_t i = 0; i < roots; i++)
             open[sorted[i].root] = found[i] != 0;
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = final_gather_work(gather) - before});
+    account_work(&solver->account, WORK_FINAL_GATHER,
+                 final_gather_work(gather) - before, 0);
     alloc_free(found);
     alloc_free(sorted);
     return open;

@@ -301,7 +301,8 @@ static void check_leaves(struct checking *c, double goal)
 struct spotcheck spotcheck_run(struct solver *solver, double goal)
 {
     const struct gathered *gathered = &solver->beyond->answer->counts;
-    double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
+    double expected = fmax(0.5 * goal, gathered->error);
+    account_begin(&solver->account, PHASE_SPOT_CHECKS);
     struct pathtracer pathtracer =
         pathtracer_make(solver->model.scene, solver->model.octree);
     struct checking c = {
@@ -317,16 +318,14 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
         check_leaves(&c, goal);
     }
     const struct octree_counts *counts = pathtracer.counts;
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done =
-                                       counts->node_tests + counts->triangle_tests});
+    account_work(&solver->account, WORK_FINAL_GATHER,
+                 counts->node_tests + counts->triangle_tests, 0);
     alloc_free(c.leaves);
     alloc_free(c.upto);
     alloc_free(c.weight);
     alloc_free(favour);
     pathtracer_free(&pathtracer);
-    solver->account.seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
+    account_end(&solver->account, PHASE_SPOT_CHECKS);
     return c.result;
 }
 

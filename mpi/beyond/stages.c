@@ -66,8 +66,7 @@ static struct stint do_items(struct stages *s, double most)
         s->done += (double)s->work[s->items[k]] * s->solver->comm->size;
         progress_tick(s->solver->progress, s->done / s->all);
     }
-    ledger_add(&s->solver->account.ledger, (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                                               .share.done = own.tests});
+    account_work(&s->solver->account, WORK_FINAL_GATHER, own.tests, 0);
     return own;
 }
 
@@ -160,8 +159,7 @@ void stages_make_cuts(struct solver *solver, struct final_gather *gather,
     }
     share_cuts(comm, aims->lamp_cuts);
     share_cuts(comm, aims->bright_cuts);
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = final_gather_work(gather) - before});
+    account_work(&solver->account, WORK_FINAL_GATHER,
+                 final_gather_work(gather) - before, 0);
     alloc_free(known);
 }
