@@ -642,7 +642,7 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
     struct gathering g = {.solver = solver, .mesh = &mesh, .stages = &stages};
     account_begin(&solver->account, PHASE_FINAL_GATHER);
     account_begin(&solver->account, PHASE_ROWS);
-    bool done = gather_mesh_make(solver, vote->links, &mesh);
+    bool done = solver_make_mesh(solver, vote->links, &mesh);
     if (done) {
         gathering_start(&g, solver);
         done = make_rows(&g);

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "mpi/beyond/gather_mesh.h"
+#include "mpi/beyond/mesh.h"
 #include "mpi/beyond/stages.h"
 
 /* What covers a leaf: faces in its plane, and things standing on the leaf. The first four

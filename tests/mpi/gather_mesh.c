@@ -1,14 +1,15 @@
-/* Tests of mpi/beyond/gather_mesh.h: the leaves that a final gather splits, and the rays
+/* Tests of mpi/beyond/mesh.h: the leaves that a final gather splits, and the rays
  * that each of them gets. */
 #include "mpi/beyond/beyond.h"
-#include "mpi/beyond/gather_mesh.h"
+#include "mpi/beyond/mesh.h"
 #include "mpi/beyond/stages.h"
+#include "rad/beyond/gather/shots.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
 /* A floor below a small lamp, and a small black box because of which rays are needed; the
  * links split nothing. Leaves are to be split until A times the variance of their light
- * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in gather_mesh.c),
+ * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in rad/beyond/gather/mesh.c),
  * and no further. Chance moves the threshold by a factor of two at most. */
 static void test_mesh(double epsilon)
 {
@@ -270,7 +271,7 @@ static void test_guess(const char *words)
     snprintf(all, sizeof all, "--max-level 0 %s", words);
     struct solution s = solve_soup(&soup, all);
     struct gather_mesh mesh = {.count = 0};
-    bool made = gather_mesh_make(s.solver, 0, &mesh);
+    bool made = solver_make_mesh(s.solver, 0, &mesh);
     const int *rays = mesh.rays;
     tap_ok(made && mesh.traced == 0 && 2 * rays[0] <= rays[2] && 2 * rays[2] <= rays[4],
            "%s: %d rays for a grey leaf, %d for a white one, %d below a lamp", words,
@@ -288,7 +289,7 @@ static void test_shots(void)
     int shots[COUNT], sum = 0, wrong = 0;
     for (int k = 0; k < COUNT; k++)
         worth[k] = k < 10 ? 0.0 : exp(0.002 * k);
-    gather_share_shots(worth, COUNT, MEAN, shots);
+    shots_share(worth, COUNT, MEAN, shots);
     for (int k = 0; k < COUNT; k++) {
         sum += shots[k];
         shared += worth[k] * worth[k] / shots[k];
@@ -301,7 +302,7 @@ static void test_shots(void)
            (double)sum / (MEAN * COUNT), shared / equal);
     for (int k = 0; k < COUNT; k++)
         worth[k] = 0.0;
-    gather_share_shots(worth, COUNT, MEAN, shots);
+    shots_share(worth, COUNT, MEAN, shots);
     tap_ok(shots[0] == MEAN && shots[COUNT - 1] == MEAN, "of no worth: all the mean");
 }
 

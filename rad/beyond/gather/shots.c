@@ -4,13 +4,13 @@
  * (Neyman, 1934). Numbers of shots are the mean times powers of two, since points of a
  * sequence are spread best over these; numbers are within bounds, since deviations are
  * guesses. */
-#include "mpi/beyond/gather_mesh.h"
+#include "rad/beyond/gather/shots.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "geom/alloc.h"
+#include "rad/beyond/gather/lit.h"
 
 /* A leaf gets 2^MOST_DOUBLED times the mean number at most, and 2^-MOST_HALVED at
  * least. */
@@ -72,7 +72,7 @@ static int64_t shots_of_all(const double *sorted, int64_t count, double unit, in
     return sum;
 }
 
-void gather_share_shots(const double *worth, int64_t count, int mean, int *shots)
+void shots_share(const double *worth, int64_t count, int mean, int *shots)
 {
     double low = 0.0, high = 0.0, *sorted = alloc_array((size_t)count, sizeof *sorted);
     int64_t sharing = 0; /* leaves; the others get the fewest */
@@ -90,4 +90,35 @@ void gather_share_shots(const double *worth, int64_t count, int mean, int *shots
     for (int64_t k = 0; k < count; k++)
         shots[k] = shots_of(high > 0.0 ? worth[k] / high : 2.0 * worth[k] + 1.0, mean);
     alloc_free(sorted);
+}
+
+void shots_share_by_space(const struct model *model, const int32_t *leaves, int64_t count,
+                          const double *worth, int mean, int *shots)
+{
+    int32_t spaces = lit_count(model);
+    int64_t *at = alloc_array((size_t)spaces + 1, sizeof *at);
+    double *sorted = alloc_array(2 * (size_t)count, sizeof *sorted);
+    int *dealt = alloc_array(2 * (size_t)count, sizeof *dealt);
+    for (int64_t k = 0; k < 2 * count; k++)
+        at[node_space(model, leaves[k / 2]) + 1]++;
+    for (int32_t s = 0; s < spaces; s++)
+        at[s + 1] += at[s];
+    for (int64_t k = 0; k < 2 * count; k++)
+        sorted[at[node_space(model, leaves[k / 2])]++] = worth[k];
+    for (int32_t s = spaces; s > 0; s--) /* back to where each begins */
+        at[s] = at[s - 1];
+    at[0] = 0;
+    for (int32_t s = 0; s < spaces; s++)
+        shots_share(sorted + at[s], at[s + 1] - at[s], mean, dealt + at[s]);
+    for (int64_t k = 0; k < 2 * count; k++)
+        shots[k] = dealt[at[node_space(model, leaves[k / 2])]++];
+    alloc_free(dealt);
+    alloc_free(sorted);
+    alloc_free(at);
+}
+
+int shots_of_black(int mean, double part)
+{
+    int rays = (int)(fmin(1.0, part) * mean);
+    return rays > FEWEST ? rays : FEWEST;
 }

@@ -5,7 +5,7 @@
  * shadows: so there are exact rows only if half of the scene's area is open. Proofs cost
  * much as well, and most scenes are not open: segments show first where a root is not,
  * and the search ends once half of the area cannot be had. */
-#include "mpi/beyond/gather_mesh.h"
+#include "mpi/beyond/open.h"
 
 #include <stdlib.h>
 
@@ -57,7 +57,7 @@ static bool half_is_open(const struct solver *solver, struct final_gather *gathe
     return 2.0 * blocked <= model->area;
 }
 
-uint8_t *gather_find_open_roots(struct solver *solver, struct final_gather *gather)
+uint8_t *solver_find_open_roots(struct solver *solver, struct final_gather *gather)
 {
     int32_t roots = scene_root_count(solver->model.scene);
     int64_t before = final_gather_work(gather);
