@@ -91,7 +91,7 @@ endif
 
 # All sources of these folders but the programs.
 OCTREE = $(wildcard octree/*.c)
-PROGRAMS = tools/imgdiff tools/pathtracer tools/id tools/viewfactors/main
+PROGRAMS = tools/imgdiff tools/pathtracer tools/id tools/score tools/viewfactors/main
 FOLDERS = geom rad rad/beyond rad/beyond/gather mpi mpi/beyond io/scene io/run \
           io/picture tools tools/viewfactors lib
 SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
@@ -104,7 +104,8 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall \
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
-        patch_exchange link patch_link method cluster node oracle error_oracle pushpull \
+        patch_exchange factors link patch_link method cluster node oracle error_oracle \
+        pushpull \
         final_gather lamps checksum paths meter plan balance assign gather_mesh \
         spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
@@ -122,7 +123,7 @@ FUZZERS = obj mtl ply image view points links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
-all: $(PHR) $(IMGDIFF) build/viewfactors build/id
+all: $(PHR) $(IMGDIFF) build/viewfactors build/id build/score
 
 # Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr
 # again.
@@ -135,15 +136,15 @@ $(IMGDIFF): $(BUILD)/imgdiff FORCE
 	@mkdir -p $(@D)
 	@cmp -s $(BUILD)/imgdiff $@ || cp $(BUILD)/imgdiff $@
 
-build/id build/viewfactors build/pathtracer: build/%: $(BUILD)/% FORCE
+build/id build/score build/viewfactors build/pathtracer: build/%: $(BUILD)/% FORCE
 	@mkdir -p build
 	@cmp -s $< $@ || cp $< $@
 
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
 
-$(BUILD)/imgdiff $(BUILD)/id $(BUILD)/pathtracer: $(BUILD)/%: $(BUILD)/tools/%.o \
-    $(BUILD)/libphr.a
+$(BUILD)/imgdiff $(BUILD)/id $(BUILD)/score $(BUILD)/pathtracer: $(BUILD)/%: \
+    $(BUILD)/tools/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(BUILD)/viewfactors: $(BUILD)/tools/viewfactors/main.o $(BUILD)/libphr.a
@@ -271,6 +272,10 @@ course: $(PHR) $(IMGDIFF) build/viewfactors $(COURSE) build/room
 	MPIEXEC="$(MPIEXEC)" CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/run.sh
 	MPIEXEC="$(MPIEXEC)" sh docs/course/figures.sh
 
+build/oracle/%: docs/oracle/%.c $(BUILD)/libphr.a
+	@mkdir -p $(@D)
+	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
+
 exercise: $(BUILD)/libphr.a
 	CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/exercise.sh $(N)
 
@@ -284,7 +289,8 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
 	mv build/answers.csv scenes/answers.csv
 
-check: $(PHR) $(IMGDIFF) build/viewfactors pathtracer tests build/room bench \
+check: $(PHR) $(IMGDIFF) build/viewfactors build/score build/oracle/hemicube pathtracer \
+    tests build/room bench \
     $(BENCHES:%=$(BUILD)/%) $(JUDGES:%=$(BUILD)/%) $(COURSE)
 	cp scenes/room.mtl $(BUILD)/tests
 	build/room 1000 1 >$(BUILD)/tests/room.obj
