@@ -39,7 +39,7 @@ for file in $house mpi/*.[ch] mpi/beyond/*.[ch] lib/*.[ch] scenes/* docs/*; do
     [ "$file" = "$folder/README.md" ] || named "$file" "$folder/README.md" ||
         missing="$missing $file"
 done
-for file in tests/*.[ch] tests/*.sh tests/*.csv tests/*.awk tests/*.py \
+for file in tests/*.[ch] tests/*.sh tests/*.awk tests/*.py \
     tests/*/*.[ch] tests/*/*/*.c tests/bench/*; do
     named "$file" tests/README.md || missing="$missing $file"
 done

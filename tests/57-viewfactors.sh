@@ -1,4 +1,4 @@
-# viewfactors: exact without blockers (pairs: tests/55-validate.sh), within 0.5 % with
+# viewfactors: exact without blockers (tests/rad/beyond/factors.c), within 0.5 % with
 # them and within 0.1 % if asked for; the error is what it says, or smaller; tables have
 # what they should have, and are the same on any number of ranks and without MPI, whatever
 # the unit of length and the place of the scene.
@@ -24,32 +24,6 @@ near() {
         if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
 }
 
-# objs FILE: writes each case of a CSV file as $work/ID.obj, its polygons, whose number is
-# the third field, as groups p1, p2, ..., and lists "ID F".
-objs() {
-    awk -F, -v work="$work" 'NR > 1 {
-        polygons = $3
-        at = 4
-        file = work "/" $1 ".obj"
-        corners = 0
-        printf "" >file
-        for (p = 1; p <= polygons; p++) {
-            count = $at
-            print "g p" p >file
-            for (k = 0; k < count; k++)
-                print "v", $(at + 3 * k + 1), $(at + 3 * k + 2), $(at + 3 * k + 3) >file
-            printf "f" >file
-            for (k = 1; k <= count; k++)
-                printf " %d", corners + k >file
-            print "" >file
-            corners += count
-            at += 3 * count + 1
-        }
-        close(file)
-        print $1, $at
-    }' "$1"
-}
-
 # --- with blockers: F, and the largest error of F as it is told ---
 
 # claimed FILE ARGUMENTS...: the table, and the error that the run tells in $claim.
@@ -67,18 +41,18 @@ keeps_claim() {
         awk '{ print 1.5 * $1 + 1e-11 }')"
 }
 
-objs tests/formfactors_blocked.csv >"$work/cases"
-objs tests/viewfactors.csv >>"$work/cases"
+awk -F, '/^(OB|V)[0-9]+,/ { print $1, $3 }' docs/oracle/cases.csv >"$work/cases"
 check "17 blocked pairs" [ "$(wc -l <"$work/cases")" -eq 17 ]
 while read -r id exact; do
+    "$BUILD/score" --obj docs/oracle/cases.csv "$id" >"$work/$id.obj"
     table "$id"
-    check "$id by default" near "$(value "$id" p1 p2)" "$exact" 0.005 1e-12
+    check "$id by default" near "$(value "$id" 1 2)" "$exact" 0.005 1e-12
     table "$id" --epsilon 1e-4
-    check "$id at epsilon 1e-4" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
+    check "$id at epsilon 1e-4" near "$(value "$id" 1 2)" "$exact" 0.001 1e-12
     for wanted in "--epsilon 0.1" "--epsilon 0.01" "--accuracy 1e-3" "--accuracy 1e-4"; do
         claimed "$id" $wanted
         check "$id with $wanted: within 1.5 times the error that it tells ($claim)" \
-            keeps_claim "$id" p1 p2 "$exact"
+            keeps_claim "$id" 1 2 "$exact"
         case $wanted in
         *accuracy*) check "which is what was asked for" holds "$claim <= ${wanted#* }" ;;
         esac
@@ -311,7 +285,7 @@ table lamps --two-sided-lamps
 check "with --two-sided-lamps both do" grep -q '^a,b,2,' "$work/lamps.csv"
 check "and it is seen" near "$(value lamps a b)" 0.0999124478491935 1e-9 0
 table OB1 --two-sided
-check "a blocked pair with --two-sided" near "$(value OB1 p1 p2)" 0.074934335887 0.01 0
+check "a blocked pair with --two-sided" near "$(value OB1 1 2)" 0.074934335887 0.01 0
 
 # --- the same bytes everywhere ---
 
@@ -351,17 +325,14 @@ for option in "-o a.ppm" "--stats a.json" "--samples 2" "--solver cg" \
     "--sky 1"; do
     check "${option% *}" refused "unknown option ${option% *};" "$work/box.obj" $option
 done
-check "words behind --validate" refused "--validate is" --validate "$work/box.obj"
 check "too many groups" \
     refused "$work/many.obj: 8193 groups are more than 8192" "$work/many.obj"
 
 # --- the words ---
 
-for option in --validate --form-factors; do
-    said=$("$PHR" $option "$work/box.obj" 2>&1)
-    check "phr $option says where it went: $said" \
-        [ $? -eq 2 -a \
-        "${said% *}" = "phr: $option is a program of its own now: viewfactors" ]
-done
+said=$("$PHR" --form-factors "$work/box.obj" 2>&1)
+check "phr --form-factors says where it went: $said" \
+    [ $? -eq 2 -a \
+    "${said% *}" = "phr: --form-factors is a program of its own now: viewfactors" ]
 
 tap_done

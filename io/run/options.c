@@ -327,7 +327,6 @@ static const struct option OPTIONS[] = {
     {"--quiet", "", "print nothing", FLAG(quiet)},
     {"--help", "", "or --help=OPTION", FLAG(help)},
     {"--version", "", "and licence", FLAG(version)},
-    {"--validate", NULL, "viewfactors --validate", OTHER(NULL)},
     {"--form-factors", NULL, "viewfactors SCENE", OTHER(NULL)},
 };
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof OPTIONS[0] };

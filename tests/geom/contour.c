@@ -1,6 +1,6 @@
 /* Tests of geom/contour.h: identities. Rows of closed solids add up to 1, parts add up to
  * the whole, neither the order of arguments nor the unit matters. (Exact values, closed
- * forms of rectangles among them, are tests/55-validate.sh's.) */
+ * forms of rectangles among them, are tests/rad/beyond/factors.c's.) */
 #include "geom/contour.h"
 
 #include "tests/scenes.h"

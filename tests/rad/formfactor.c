@@ -1,5 +1,5 @@
 /* Tests of rad/formfactor.h: Eq. 2 by hand, its sum over 16 pairs of sub-areas, and
- * bounds among blockers. (Against exact factors: tests/55-validate.sh.) */
+ * bounds among blockers. (Against exact factors: tests/rad/beyond/factors.c.) */
 #include "rad/formfactor.h"
 
 #include "tests/pairs.h"

@@ -2,7 +2,7 @@
  * that other tests cover:
  *
  *     F <= 1, G <= the smaller area      formfactor.c, patch_exchange.c, contour.c
- *     singular shared edges              contour.c, 55-validate.sh
+ *     singular shared edges              contour.c, factors.c
  *     drift of row sums, slivers         58-panel.sh
  *     false convergence                  exact.c, conjugate.c
  *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, obj.c, scene.c

@@ -1,32 +1,26 @@
-/* viewfactors: form factors between the groups of a scene, with blockers, as CSV; and
- * every form factor of phr against exact answers. A program of its own, installed for
- * users of heat balances.
+/* viewfactors: form factors between the groups of a scene, with blockers, as CSV. A
+ * program of its own, installed for users of heat balances.
  *
  * Scenes are read as by phr, and no light is computed.
  *
  * With --accuracy, pairs of groups not good enough are done again with a smaller epsilon,
  * at most ROUNDS times: each round costs several times the one before, so earlier rounds
  * cost little. */
-#include <string.h>
-
 #include "geom/stop.h"
 #include "tools/input.h"
 #include "tools/viewfactors/pairs.h"
 #include "tools/viewfactors/table.h"
-#include "tools/viewfactors/validate.h"
 
 static const char HELP[] =
     "usage: viewfactors [options] SCENE  or  mpiexec -n P viewfactors [options] SCENE\n"
-    "       viewfactors --validate\n"
     "Prints the form factors F between the groups (o, g) of a scene, OBJ or PLY, with\n"
     "blockers, as CSV. Defaults in brackets.\n"
     "  --epsilon E    of the smaller group's area, in doubt between two patches (1e-2)\n"
     "  --accuracy A   smaller epsilons, until no F is off by more\n"
     "  --max-level N  of subdivision (10)\n"
     "  --two-sided, --two-sided-lamps  faces have backs, those of lamps, too\n"
-    "  --validate     each form factor of phr for 81 pairs with exact answers\n"
     "  --quiet  --verbose  --help  --version\n"
-    "Exit status: 0 done; 1 failed, stopped, worse than stated; 2 bad usage or input.\n";
+    "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input.\n";
 
 /* The options of phr valid here, too. */
 static const char *const OPTIONS[] = {
@@ -126,10 +120,7 @@ int main(int argc, char **argv)
     error_program = "viewfactors";
     struct run run = {0};
     bool started = run_start(&run, &argc, &argv), first = run.comm.rank == 0;
-    if (started && argc == 2 && strcmp(argv[1], "--validate") == 0) {
-        if (first && !validate_print(stdout))
-            error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
-    } else if (started && parse(&run, argc, argv)) {
+    if (started && parse(&run, argc, argv)) {
         bool words = run.options.help || run.options.version;
         if (words && first)
             print_words(&run.options);
