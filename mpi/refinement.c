@@ -180,7 +180,7 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
         level->phase.bytes = BYTES_PER_WIRE_LINK * traffic.sent;
         alloc_free(destination);
     }
-    solver_learn(solver, prolific);
+    solver_learn(solver, prolific, true);
     share->predicted = load_of_all(prolific);
     level->work = model_work(&solver->model);
     account_end(&solver->account, PHASE_MIGRATION);
@@ -194,16 +194,14 @@ static void begin_pass(struct solver *solver)
 {
     account_begin(&solver->account, PHASE_REFINEMENT);
     account_begin(&solver->account, PHASE_PREPARE);
-    if (solver->model.method.prepare) {
-        solver_complete(solver);
-        solver->model.method.prepare(&solver->model);
-    }
-    account_end(&solver->account, PHASE_PREPARE);
-    account_end(&solver->account, PHASE_REFINEMENT);
     solver->turn.pass++;
     solver->turn.fresh = true;
     solver->turn.split_here = 0;
     solver->turn.first_new = solver->turn.shared = solver->model.forest->count;
+    if (solver->steps.prepare)
+        solver->steps.prepare(solver);
+    account_end(&solver->account, PHASE_PREPARE);
+    account_end(&solver->account, PHASE_REFINEMENT);
 }
 
 /* True before link i of a level, unless there is none or a signal has come. */

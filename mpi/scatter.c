@@ -11,8 +11,8 @@
  * radiosities of these, which hold for the pass. A patch made in the pass has the
  * radiosity of the patch split for it.
  *
- * Rejected: the radiosities of all leaves to all ranks, but for once at the end, for what
- * looks at the whole solution. */
+ * The radiosities of all leaves go to all ranks once, at the end, for what looks at the
+ * whole solution. */
 #include "mpi/solver.h"
 
 #include <string.h>
@@ -21,7 +21,7 @@
 
 /* --- lists --- */
 
-static void route_free(struct route *route)
+void route_free(struct route *route)
 {
     alloc_free(route->nodes);
     alloc_free(route->counts);
@@ -62,9 +62,8 @@ static struct rgb *radiosity_of(const struct solver *solver, int32_t node)
                                  : &solver->model.forest->radiosity[node];
 }
 
-/* These nodes, home by home. */
-static struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
-                                   int64_t count)
+struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
+                            int64_t count)
 {
     size_t ranks = (size_t)solver->comm->size;
     struct route route = {.count = count};
@@ -81,8 +80,7 @@ static struct route route_to_homes(const struct solver *solver, const int32_t *n
 }
 
 /* Collective. The nodes at home here that other ranks have in theirs, rank by rank. */
-static struct route route_to_proxies(struct solver *solver, const struct route *asked,
-                                     enum cargo cargo)
+static struct route route_to_proxies(struct solver *solver, const struct route *asked)
 {
     const struct model *model = &solver->model;
     size_t ranks = (size_t)solver->comm->size;
@@ -99,8 +97,8 @@ static struct route route_to_proxies(struct solver *solver, const struct route *
     comm_deliver(solver->comm, ids, asked->counts, own, route.counts, sizeof *ids);
     for (int64_t i = 0; i < route.count; i++)
         route.nodes[i] = model->method.node_reach(model, own[i]);
-    solver->account.bytes[cargo] += route.count * (int64_t)sizeof *own;
-    solver->account.messages[cargo] += comm_counts().messages - messages;
+    solver->account.bytes[CARGO_LIGHT] += route.count * (int64_t)sizeof *own;
+    solver->account.messages[CARGO_LIGHT] += comm_counts().messages - messages;
     alloc_free(own);
     alloc_free(ids);
     return route;
@@ -108,7 +106,7 @@ static struct route route_to_proxies(struct solver *solver, const struct route *
 
 /* Collective. Radiosities go from originals to proxies. */
 static void send_values(struct solver *solver, const struct route *originals,
-                        const struct route *proxies, enum cargo cargo)
+                        const struct route *proxies)
 {
     int64_t messages = comm_counts().messages;
     int64_t sent = originals->count, got = proxies->count;
@@ -119,28 +117,13 @@ static void send_values(struct solver *solver, const struct route *originals,
     comm_deliver(solver->comm, out, originals->counts, in, proxies->counts, sizeof *out);
     for (int64_t i = 0; i < got; i++)
         *radiosity_of(solver, proxies->nodes[i]) = in[i];
-    solver->account.bytes[cargo] += sent * (int64_t)sizeof *out;
-    solver->account.messages[cargo] += comm_counts().messages - messages;
+    solver->account.bytes[CARGO_LIGHT] += sent * (int64_t)sizeof *out;
+    solver->account.messages[CARGO_LIGHT] += comm_counts().messages - messages;
     solver->account.copied += sent + got;
     alloc_free(in);
     alloc_free(out);
 }
 
-/* Collective. Gets the radiosities of these nodes from their homes. The nodes become
- * proxies, unless `routes` is NULL. */
-static void ask(struct solver *solver, const int32_t *nodes, int64_t count,
-                struct routes *routes, enum cargo cargo)
-{
-    struct route asked = route_to_homes(solver, nodes, count);
-    struct route own = route_to_proxies(solver, &asked, cargo);
-    send_values(solver, &own, &asked, cargo);
-    if (routes) {
-        route_extend(&routes->proxies, &asked, solver->comm->size);
-        route_extend(&routes->originals, &own, solver->comm->size);
-    }
-    route_free(&own);
-    route_free(&asked);
-}
 
 /* --- proxies --- */
 
@@ -148,9 +131,9 @@ static void ask(struct solver *solver, const int32_t *nodes, int64_t count,
 enum { ALWAYS = INT32_MAX };
 
 /* True of a node of another home that is not marked so far, or with less; marks it. */
-static bool is_new(struct solver *solver, struct routes *routes, int32_t node,
-                   int32_t mark)
+static bool is_new(struct solver *solver, int32_t node, int32_t mark)
 {
+    struct routes *routes = &solver->routes;
     int64_t clusters = solver->memory.clusters, before = routes->capacity,
             all = solver->model.forest->count + clusters;
     if (home_of(solver, node) == solver->comm->rank)
@@ -179,15 +162,21 @@ void routes_renew(struct solver *solver)
         if (model->method.ends)
             number = model->method.ends(model, &links->items[i], ends);
         for (int k = 0; k < number; k++)
-            if (is_new(solver, &solver->routes, ends[k], ALWAYS))
+            if (is_new(solver, ends[k], ALWAYS))
                 wanted[count++] = ends[k];
     }
-    ask(solver, wanted, count, &solver->routes, CARGO_LIGHT);
+    struct route asked = route_to_homes(solver, wanted, count);
+    struct route own = route_to_proxies(solver, &asked);
+    send_values(solver, &own, &asked);
+    route_extend(&solver->routes.proxies, &asked, solver->comm->size);
+    route_extend(&solver->routes.originals, &own, solver->comm->size);
     solver->account.held = solver->routes.proxies.count;
+    route_free(&own);
+    route_free(&asked);
     alloc_free(wanted);
 }
 
-/* The patch, from before this pass, of which a patch has the radiosity. */
+/* The node, from before this pass, of which a node has the radiosity. */
 static int32_t origin_of(const struct solver *solver, int32_t p)
 {
     while (p >= solver->turn.first_new)
@@ -195,63 +184,90 @@ static int32_t origin_of(const struct solver *solver, int32_t p)
     return p;
 }
 
-void solver_learn(struct solver *solver, const struct link_list *list)
+/* Appends a node and, if `deep`, its children to a list. Returns their number. */
+static int name_family(const struct model *model, int32_t node, bool deep, int32_t *list)
 {
-    enum { EACH = 10 }; /* two ends and their children */
-    struct forest *forest = solver->model.forest;
+    int count = 0;
+    list[count++] = node;
+    for (int k = 0; k < 4 && deep; k++) {
+        list[count] = model->method.node_child(model, node, k);
+        count += list[count] != NODE_NONE;
+    }
+    return count;
+}
+
+void solver_learn(struct solver *solver, const struct link_list *list, bool deep)
+{
+    enum { EACH = 10 + 1 }; /* two ends and their children; room for one that is none */
     if (solver->turn.complete)
         return;
-    int32_t *nodes = alloc_array(EACH * (size_t)list->count, sizeof *nodes);
-    int32_t *wanted = alloc_array(EACH * (size_t)list->count, sizeof *wanted);
+    size_t room = (deep ? EACH : 2) * (size_t)list->count;
+    int32_t *nodes = alloc_array(room, sizeof *nodes);
+    int32_t *wanted = alloc_array(room, sizeof *wanted);
     int64_t count = 0, unknown = 0;
     for (int64_t i = 0; i < 2 * list->count; i++) {
         int32_t end = i % 2 ? list->items[i / 2].p : list->items[i / 2].q;
-        nodes[count++] = end;
-        for (int k = 0; k < 4 && !patch_is_leaf(&forest->patches[end]); k++)
-            nodes[count++] = forest->patches[end].children + k;
+        count += name_family(&solver->model, end, deep, nodes + count);
     }
     for (int64_t i = 0; i < count; i++) {
-        int32_t p = origin_of(solver, nodes[i]);
-        if (is_new(solver, &solver->routes, p, (int32_t)solver->turn.pass))
-            wanted[unknown++] = p;
+        int32_t node = origin_of(solver, nodes[i]);
+        if (is_new(solver, node, (int32_t)solver->turn.pass))
+            wanted[unknown++] = node;
     }
-    ask(solver, wanted, unknown, NULL, CARGO_LIGHT);
+    struct route asked = route_to_homes(solver, wanted, unknown);
+    struct route own = route_to_proxies(solver, &asked);
+    send_values(solver, &own, &asked);
+    if (solver->steps.learn)
+        solver->steps.learn(solver, &own, &asked);
     for (int64_t i = 0; i < count; i++)
-        forest->radiosity[nodes[i]] = forest->radiosity[origin_of(solver, nodes[i])];
+        *radiosity_of(solver, nodes[i]) =
+            *radiosity_of(solver, origin_of(solver, nodes[i]));
+    route_free(&own);
+    route_free(&asked);
     alloc_free(wanted);
     alloc_free(nodes);
 }
 
-/* --- all leaves --- */
+/* --- from all homes to all ranks --- */
 
-/* Collective. All leaves get proxies on all ranks; B of dark ones stays 0. */
-static void extend_whole(struct solver *solver)
+void route_share(struct solver *solver, const struct route *route, enum cargo cargo)
 {
-    const struct forest *forest = solver->model.forest;
-    struct routes *whole = &solver->whole;
-    int32_t *wanted = alloc_array((size_t)forest->count, sizeof *wanted);
-    int64_t count = 0;
-    for (int32_t p = 0; p < forest->count; p++)
-        if (patch_is_leaf(&forest->patches[p]) && is_new(solver, whole, p, ALWAYS) &&
-            !material_is_dark(forest_material(forest, p)))
-            wanted[count++] = p;
-    ask(solver, wanted, count, whole, CARGO_WHOLE);
-    whole->trees = forest->count;
-    alloc_free(wanted);
+    const struct comm *comm = solver->comm;
+    int64_t messages = comm_counts().messages;
+    int own = route->counts[comm->rank];
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    struct rgb *values = alloc_array((size_t)route->count, sizeof *values);
+    comm_displacements(comm, route->counts, at);
+    for (int i = at[comm->rank]; i < at[comm->rank] + own; i++)
+        values[i] = *radiosity_of(solver, route->nodes[i]);
+    comm_share(comm, values, route->counts, at, sizeof *values);
+    for (int64_t i = 0; i < route->count; i++)
+        *radiosity_of(solver, route->nodes[i]) = values[i];
+    solver->account.bytes[cargo] += (route->count - own) * (int64_t)sizeof *values;
+    solver->account.messages[cargo] += comm_counts().messages - messages;
+    alloc_free(values);
+    alloc_free(at);
 }
 
+/* B of dark leaves is 0. */
 void solver_complete(struct solver *solver)
 {
-    struct routes *whole = &solver->whole;
+    struct forest *forest = solver->model.forest;
     if (solver->turn.complete)
         return;
     account_begin(&solver->account, PHASE_SCATTER);
-    if (whole->trees > 0)
-        send_values(solver, &whole->originals, &whole->proxies, CARGO_WHOLE);
-    if (whole->trees < solver->model.forest->count)
-        extend_whole(solver);
-    forest_average(solver->model.forest);
+    int32_t *leaves = alloc_array((size_t)forest->count, sizeof *leaves);
+    int64_t count = 0;
+    for (int32_t p = -1; (p = forest_next_leaf(forest, p)) >= 0;) {
+        leaves[count] = p;
+        count += !material_is_dark(forest_material(forest, p));
+    }
+    struct route all = route_to_homes(solver, leaves, count);
+    route_share(solver, &all, CARGO_WHOLE);
+    forest_average(forest);
     solver->turn.complete = true;
+    route_free(&all);
+    alloc_free(leaves);
     account_end(&solver->account, PHASE_SCATTER);
 }
 
@@ -260,7 +276,7 @@ void solver_complete(struct solver *solver)
 void solver_renew_proxies(struct solver *solver)
 {
     account_begin(&solver->account, PHASE_SCATTER);
-    send_values(solver, &solver->routes.originals, &solver->routes.proxies, CARGO_LIGHT);
+    send_values(solver, &solver->routes.originals, &solver->routes.proxies);
     account_end(&solver->account, PHASE_SCATTER);
 }
 

@@ -39,7 +39,6 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->homes.own);
     alloc_free(solver->homes.patches);
     routes_free(&solver->routes);
-    routes_free(&solver->whole);
     account_free(&solver->account);
     alloc_free(solver);
 }

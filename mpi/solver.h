@@ -61,7 +61,6 @@ struct routes {
                                last pass whose radiosity is known here, of a node of
                                another home; see mpi/scatter.c */
     int64_t capacity;
-    int64_t trees;          /* patches there were when all leaves got proxies */
 };
 
 /* Where the run is. */
@@ -87,6 +86,10 @@ enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 /* The variable parts of steps: the paper's, and phr's own. NULL: an empty part. */
 struct steps {
     void (*deal)(struct solver *solver, int *owner); /* 3: a home for each root */
+    void (*prepare)(struct solver *solver);     /* 4: bounds on light, before a pass */
+    /* 4: proxies at new ends learn these bounds */
+    void (*learn)(struct solver *solver, const struct route *originals,
+                  const struct route *proxies);
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
     /* 5: adds flux over the links living here */
     void (*transfer)(struct solver *solver, const struct rgb *vector);
@@ -110,7 +113,6 @@ struct solver {
     struct homes homes;
     struct clusters above;
     struct routes routes;      /* of flux to the homes, and of radiosities back */
-    struct routes whole;       /* the same for all leaves on all ranks */
     struct turn turn;
     struct memory memory;
     struct flux_unit flux;     /* unit of the flux of the last transfer */
@@ -165,9 +167,18 @@ void solver_settle_links(struct solver *solver);
  * then counts as not begun, without light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Collective. Before links are split: this rank learns the radiosities of their ends, and
- * of the children of these. */
-void solver_learn(struct solver *solver, const struct link_list *list);
+/* Collective. This rank learns the radiosities of the ends of links and, if `deep`,
+ * before these are split, of the children of the ends. */
+void solver_learn(struct solver *solver, const struct link_list *list, bool deep);
+
+/* These nodes, home by home; to be freed with route_free(). */
+struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
+                            int64_t count);
+void route_free(struct route *route);
+
+/* Collective. All ranks get the radiosities of nodes from their homes. Pre: the route is
+ * the same on all ranks. */
+void route_share(struct solver *solver, const struct route *route, enum cargo cargo);
 
 /* Collective. Nodes of other homes at new ends of own links that carry light become
  * proxies. Pre: links are sorted, and all ranks have the same trees. */

@@ -27,15 +27,15 @@ struct method {
     struct patch_id (*node_id)(const struct model *model, int32_t node);
     int32_t (*node_reach)(const struct model *model, struct patch_id id);
 
+    /* Child k of a node, or NODE_NONE. */
+    int32_t (*node_child)(const struct model *model, int32_t node, int k);
+
     /* The power of which epsilon is a part, W, areas in square scene units. NULL: the
      * emitted power. */
     double (*light_power)(struct model *model);
 
     /* The first link. NULL: all pairs of roots are linked. */
     struct link (*first_link)(void);
-
-    /* Before a pass: what refinement reads of the solution so far. NULL: nothing else. */
-    void (*prepare)(struct model *model);
 
     /* The link kernel: makes the link between patches p and q, with its form factor and
      * its cost. `parent` is the split link, NULL: none. False if there is no link. */

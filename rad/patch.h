@@ -35,7 +35,8 @@ struct forest {
     struct patch *patches;     /* [count] */
     struct rgb *radiosity;     /* [count] B, W/m^2; of an inner patch the mean over its
                                   leaves */
-    float *ranges;             /* [ranged] see rad/beyond/range.h; NULL: there are none */
+    float *ranges;             /* [ranged] largest range of a child, W/m^2; NULL: there
+                                  are none; see rad/beyond/range.h */
     struct rgb *above;         /* [root_count] irradiance handed down by clusters to each
                                   root, W/m^2; NULL: no clusters */
     double *caps;              /* [count] factor of the irradiance of each leaf, 1; NULL:
@@ -51,6 +52,13 @@ void forest_destroy(struct forest *forest);
 static inline bool patch_is_leaf(const struct patch *patch)
 {
     return patch->children == 0;
+}
+
+/* Child k of a patch, or NODE_NONE. */
+static inline int32_t forest_child(const struct forest *forest, int32_t patch, int k)
+{
+    int32_t first = forest->patches[patch].children;
+    return first > 0 ? first + k : NODE_NONE;
 }
 
 /* Gives a leaf four children with its radiosity and no flux; does nothing to an inner

@@ -69,8 +69,7 @@ enum cargo {
     CARGO_LINKS, /* moving, in steps 3 and 4 */
     CARGO_FLUX,  /* sent in step 5 */
     CARGO_LIGHT, /* got in step 7 and before levels; new patches, at the end of step 4 */
-    CARGO_WHOLE, /* the light of all leaves to all ranks: at the end, and by default
-                    before each pass */
+    CARGO_WHOLE, /* the light of all leaves to all ranks, at the end */
     CARGO_COUNT
 };
 

@@ -89,9 +89,7 @@ void above_free(struct solver *solver)
     alloc_free(branches->owner);
     alloc_free(branches->top);
     alloc_free(branches->own);
-    alloc_free(branches->nodes);
-    alloc_free(branches->counts);
-    alloc_free(branches->at);
+    route_free(&branches->all);
     alloc_free(branches);
     cluster_light_destroy(solver->model.clusters);
     cluster_tree_destroy(solver->beyond->tree);
@@ -128,24 +126,6 @@ static int32_t find_branches(struct solver *solver, int32_t node, int32_t *nodes
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
         count += find_branches(solver, cluster->child[k], nodes + count);
     return count;
-}
-
-/* Sorts branches by their homes. */
-static void sort_branches(struct solver *solver, const int32_t *nodes, const int *homes,
-                          int32_t count)
-{
-    struct branches *branches = solver->beyond->branches;
-    const struct comm *comm = solver->comm;
-    branches->nodes = alloc_array((size_t)count, sizeof *branches->nodes);
-    branches->counts = alloc_array((size_t)comm->size, sizeof *branches->counts);
-    branches->at = alloc_array((size_t)comm->size + 1, sizeof *branches->at);
-    for (int32_t i = 0; i < count; i++)
-        branches->counts[homes[i]]++;
-    comm_displacements(comm, branches->counts, branches->at);
-    for (int32_t i = 0; i < count; i++)
-        branches->nodes[branches->at[homes[i]]++] = nodes[i];
-    branches->at[comm->size] =
-        (int)comm_displacements(comm, branches->counts, branches->at);
 }
 
 /* Hands homes down from branches, and lists the own clusters. Clusters above the branches
@@ -189,9 +169,9 @@ void above_deal(struct solver *solver, int *owner)
         *(node_is_cluster(nodes[i]) ? &branches->owner[~nodes[i]] : &owner[nodes[i]]) =
             homes[i];
     hand_down(solver, owner);
-    sort_branches(solver, nodes, homes, count);
-    solver->above = (struct clusters){branches->owner, solver->model.clusters->sent,
-                                   solver->model.clusters->flux};
+    solver->above = (struct clusters){branches->owner, solver->model.clusters->radiosity,
+                                      solver->model.clusters->flux};
+    branches->all = route_to_homes(solver, nodes, count);
     alloc_free(homes);
     alloc_free(weights);
     alloc_free(nodes);
@@ -207,16 +187,27 @@ static void clear_flux(struct cluster_light *light, const int32_t *clusters,
                BANDS * sizeof *light->flux);
 }
 
-void above_begin(struct solver *solver, const struct rgb *vector)
+struct rgb *above_begin(struct solver *solver, const struct rgb *vector)
 {
     struct cluster_light *light = solver->model.clusters;
     const struct branches *branches = solver->beyond->branches;
+    struct rgb *means = NULL;
     account_begin(&solver->account, PHASE_SUMS);
-    if (solver->turn.complete || vector != solver->model.forest->radiosity)
-        cluster_light_average(light, solver->model.forest, vector, light->sent);
+    if (vector != solver->model.forest->radiosity) {
+        means = alloc_array((size_t)light->tree->count, sizeof *means);
+        cluster_light_average(light, solver->model.forest, vector, means);
+        light->sent = means;
+    }
     clear_flux(light, branches->top, branches->top_count);
     clear_flux(light, branches->own, branches->own_count);
     account_end(&solver->account, PHASE_SUMS);
+    return means;
+}
+
+void above_end(struct solver *solver, struct rgb *means)
+{
+    solver->model.clusters->sent = solver->model.clusters->radiosity;
+    alloc_free(means);
 }
 
 /* Collective. Sums the flux of the clusters above the branches. */
@@ -259,30 +250,8 @@ static void average(struct solver *solver, const int32_t *clusters, int32_t coun
     struct cluster_light *light = solver->model.clusters;
     const struct forest *forest = solver->model.forest;
     for (int32_t i = count - 1; i >= 0; i--)
-        light->sent[clusters[i]] = cluster_light_mean(light, forest, clusters[i],
-                                                      forest->radiosity, light->sent);
-}
-
-static struct rgb *radiosity_of(const struct solver *solver, int32_t node)
-{
-    return node_is_cluster(node) ? &solver->model.clusters->sent[~node]
-                                 : &solver->model.forest->radiosity[node];
-}
-
-/* Collective. All ranks get the radiosities of all branches. */
-static void share_branches(struct solver *solver)
-{
-    const struct comm *comm = solver->comm;
-    const struct branches *branches = solver->beyond->branches;
-    int all = branches->at[comm->size], own = branches->counts[comm->rank];
-    struct rgb *values = alloc_array((size_t)all, sizeof *values);
-    for (int i = 0; i < all; i++)
-        values[i] = *radiosity_of(solver, branches->nodes[i]);
-    comm_share(comm, values, branches->counts, branches->at, sizeof *values);
-    for (int i = 0; i < all; i++)
-        *radiosity_of(solver, branches->nodes[i]) = values[i];
-    solver->account.bytes[CARGO_LIGHT] += (int64_t)sizeof *values * (all - own);
-    alloc_free(values);
+        light->radiosity[clusters[i]] = cluster_light_mean(
+            light, forest, clusters[i], forest->radiosity, light->radiosity);
 }
 
 void above_scatter(struct solver *solver)
@@ -292,7 +261,7 @@ void above_scatter(struct solver *solver)
     average(solver, branches->own, branches->own_count);
     account_end(&solver->account, PHASE_SUMS);
     account_begin(&solver->account, PHASE_SCATTER);
-    share_branches(solver);
+    route_share(solver, &branches->all, CARGO_LIGHT);
     account_end(&solver->account, PHASE_SCATTER);
     account_begin(&solver->account, PHASE_SUMS);
     average(solver, branches->top, branches->top_count);

@@ -6,12 +6,13 @@
 /* Nodes receive by their clusters, too: twice as much fits into the unit. */
 static void transfer(struct solver *solver, const struct rgb *vector)
 {
-    above_begin(solver, vector);
+    struct rgb *means = above_begin(solver, vector);
     account_begin(&solver->account, PHASE_SOLVE);
     double largest = 2.0 * solver_largest(solver, vector);
     solver->flux = flux_unit_for(largest * solver->model.whole_area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     account_end(&solver->account, PHASE_SOLVE);
+    above_end(solver, means);
 }
 
 static void report(const struct solver *solver, struct stats *stats)
@@ -31,7 +32,6 @@ static void report(const struct solver *solver, struct stats *stats)
 void beyond_free_vectors(struct solver *solver)
 {
     routes_free(&solver->routes);
-    routes_free(&solver->whole);
     if (solver->beyond)
         conjugate_free(solver->beyond->descent);
     if (solver->model.clusters)
@@ -79,6 +79,10 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
     bool conjugate = criterion->solver == SOLVER_CG;
     bool tree = criterion->linking == LINKING_TREE;
     struct steps *steps = &solver->steps;
+    if (solver->model.method.keep_link) {
+        steps->prepare = bounds_prepare;
+        steps->learn = bounds_learn;
+    }
     if (!conjugate && !tree)
         return solver;
     beyond_attach(solver);

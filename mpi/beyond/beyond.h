@@ -34,9 +34,7 @@ struct branches {
     int32_t *top;  /* [top_count] clusters above the branches, parents first */
     int32_t *own;  /* [own_count] clusters at home here, parents first */
     int32_t top_count, own_count;
-    int32_t *nodes; /* the branches, clusters and roots, home by home */
-    int *counts;    /* [ranks] branches of each home */
-    int *at;        /* [ranks + 1] where those of each home begin */
+    struct route all; /* the branches, clusters and roots, home by home */
 };
 
 /* The state of a rank beyond the paper's. */
@@ -73,11 +71,18 @@ void above_free(struct solver *solver);
 /* Step 3 with a tree: homes of roots and of clusters. */
 void above_deal(struct solver *solver, int *owner);
 
-/* Step 5, before a transfer: computes the radiosities of clusters, unless the vector is
- * that of the last step 7, and clears their flux. Collective, after a transfer: sums flux
- * and pushes it down to the own roots. */
-void above_begin(struct solver *solver, const struct rgb *vector);
+/* Step 5, before a transfer: clears the flux of clusters, and averages a vector that is
+ * not the light of step 7. Returns these means, for above_end(), after the transfer.
+ * Collective, then: sums flux and pushes it down to the own roots. */
+struct rgb *above_begin(struct solver *solver, const struct rgb *vector);
+void above_end(struct solver *solver, struct rgb *means);
 void above_collect(struct solver *solver);
+
+/* Collective. Step 4, before a pass and before its levels: bounds on the light of the
+ * ends of links. */
+void bounds_prepare(struct solver *solver);
+void bounds_learn(struct solver *solver, const struct route *originals,
+                  const struct route *proxies);
 
 /* Collective. Step 7 with a tree. */
 void above_scatter(struct solver *solver);

@@ -11,7 +11,7 @@ struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
     size_t count = (size_t)tree->count;
     light->tree = tree;
     light->radiosity = alloc_array(count, sizeof *light->radiosity);
-    light->sent = alloc_array(count, sizeof *light->sent);
+    light->sent = light->radiosity;
     light->flux = alloc_array(BANDS * count, sizeof *light->flux);
     light->irradiance = alloc_array(count, sizeof *light->irradiance);
     return light;
@@ -19,10 +19,9 @@ struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
 
 void cluster_light_free_vectors(struct cluster_light *light)
 {
-    alloc_free(light->sent);
     alloc_free(light->flux);
     alloc_free(light->irradiance);
-    light->sent = light->irradiance = NULL;
+    light->irradiance = NULL;
     light->flux = NULL;
 }
 

@@ -9,7 +9,8 @@
 struct cluster_light {
     const struct cluster_tree *tree; /* borrowed */
     struct rgb *radiosity;  /* [tree->count] B, W/m^2: the mean over the area */
-    struct rgb *sent;       /* [tree->count] means of the transferred vector */
+    const struct rgb *sent; /* [tree->count] borrowed: means of the transferred vector;
+                               `radiosity`, unless another is set */
     int64_t *flux;          /* [BANDS * tree->count] Phi of the links of clusters */
     struct rgb *irradiance; /* [tree->count] H of a cluster and all above it, W/m^2 */
 };

@@ -2,22 +2,13 @@
  * tell their children apart and are split for their errors; a tree above the roots takes
  * the place of initial linking. */
 #include "rad/beyond/error_oracle.h"
+#include "rad/beyond/node.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
-#include "rad/beyond/range.h"
 
 static double light_power(struct model *model)
 {
     return scene_light(model->scene);
-}
-
-static void prepare(struct model *model)
-{
-    struct cluster_light *clusters = model->clusters;
-    forest_bound(model->forest);
-    if (clusters)
-        cluster_light_average(clusters, model->forest, model->forest->radiosity,
-                              clusters->radiosity);
 }
 
 static struct patch_id node_id(const struct model *model, int32_t node)
@@ -34,12 +25,17 @@ static int32_t node_reach(const struct model *model, struct patch_id id)
                                    : forest_reach(model->forest, id);
 }
 
+static int32_t child_of(const struct model *model, int32_t node, int k)
+{
+    return node_child(model, node, k);
+}
+
 const struct method DEFAULT = {
     .node_id = node_id,
     .node_reach = node_reach,
+    .node_child = child_of,
     .light_power = light_power,
     .first_link = node_link_top,
-    .prepare = prepare,
     .make_link = patch_link_make,
     .side_to_split = error_oracle_side_to_split,
     .split_link = node_link_split,

@@ -21,11 +21,11 @@ struct end {
 
 struct end end_of(const struct model *model, int32_t node);
 
-/* Child k of a node with children, or NODE_NONE. */
+/* Child k of a node, or NODE_NONE. */
 static inline int32_t node_child(const struct model *model, int32_t node, int k)
 {
     return node_is_cluster(node) ? model->clusters->tree->clusters[~node].child[k]
-                                 : model->forest->patches[node].children + k;
+                                 : forest_child(model->forest, node, k);
 }
 
 /* The space of a patch or a cluster; -1: of several. */

@@ -5,13 +5,13 @@
 #include "rad/patch.h"
 
 /* Raises the range of each patch, [forest->count], to the range in a band, or of the sum
- * over bands if `band` is BANDS. `scale`: [roots] factor of the ranges of each; NULL:
- * 1. */
+ * over bands if `band` is BANDS. `scale`: [roots] factor of the ranges of each. */
 void forest_raise_ranges(const struct forest *forest, int band, const double *scale,
                          float *ranges);
 
-/* Finds the ranges, summed over bands, of all patches there are. */
-void forest_bound(struct forest *forest);
+/* Finds the largest ranges of children, summed over bands, of these trees, parents before
+ * children. `patches`: [count]; NULL: all. */
+void forest_bound(struct forest *forest, const int32_t *patches, int64_t count);
 
 /* The largest range of a child of a patch as of then, 0 of a leaf. */
 double forest_range_within(const struct forest *forest, int32_t patch);

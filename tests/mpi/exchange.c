@@ -373,6 +373,47 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     scene_destroy(cube);
 }
 
+/* Refinement by error in three passes reads light of other ranks, which is made whole at
+ * the end only. */
+static void test_bounds(const struct comm *comm, const struct comm *self,
+                        const struct criterion *criterion)
+{
+    const struct comm *comms[2] = {comm, self};
+    struct solver *solvers[2];
+    struct vote vote[2];
+    struct scene *cube = cube_create();
+    for (int face = 0; face < 6; face++)
+        cube->materials[face] =
+            (struct material){{{0.5, 0.1 * face, 0.2}}, {{face == 1, 0.0, 0.0}}};
+    struct octree *octree = octree_of(cube);
+    for (int k = 0; k < 2; k++) {
+        solvers[k] = beyond_create(comms[k], cube, octree, criterion);
+        solver_link_roots(solvers[k]);
+        solver_assign_roots(solvers[k]);
+    }
+    bool alike = true, dark = comm->size == 1;
+    for (int pass = 0; pass < 3; pass++) {
+        for (int k = 0; k < 2; k++) {
+            solver_refine(solvers[k]);
+            vote[k] = iterate_links(solvers[k]);
+        }
+        dark = dark || !trees_agree(solvers[0]);
+        alike = alike && solvers[0]->model.forest->count ==
+                             solvers[1]->model.forest->count &&
+                vote[0].links == vote[1].links && vote[0].split == vote[1].split;
+    }
+    solver_complete(solvers[0]);
+    report(comm, dark, "default: no rank has all light between passes");
+    report(comm, alike && trees_agree(solvers[0]) &&
+                     forest_checksum(solvers[0]->model.forest) ==
+                         forest_checksum(solvers[1]->model.forest),
+           "and links are split as on one rank");
+    for (int k = 0; k < 2; k++)
+        solver_destroy(solvers[k]);
+    octree_destroy(octree);
+    scene_destroy(cube);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
@@ -392,6 +433,7 @@ int main(int argc, char **argv)
     criterion.balance = BALANCE_DEFAULT;
     test_refinement(&comm, &self, &criterion,
                     "error oracle and cg: several ranks split links");
+    test_bounds(&comm, &self, &criterion);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }

@@ -91,7 +91,7 @@ static void make_range(struct forest *forest, int32_t patch, double range)
     forest->radiosity[child] = (struct rgb){{50.0, 1.0, 1.0}};
     forest->radiosity[grandchild + 1].band[1] = 1.0 + range;
     forest_average(forest);
-    forest_bound(forest);
+    forest_bound(forest, NULL, forest->count);
 }
 
 /* The error of a range is G x rho of the receiver x the range. */

@@ -9,7 +9,7 @@ static unsigned difference(const struct method *a, const struct method *b)
 {
     return (unsigned)(a->light_power != b->light_power) |
            (unsigned)(a->first_link != b->first_link) << 1 |
-           (unsigned)(a->prepare != b->prepare) << 2 |
+           (unsigned)(a->node_child != b->node_child) << 2 |
            (unsigned)(a->make_link != b->make_link) << 3 |
            (unsigned)(a->side_to_split != b->side_to_split) << 4 |
            (unsigned)(a->split_link != b->split_link) << 5 |

@@ -451,8 +451,6 @@ static double product_over(struct model *model, const struct link_list *links,
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
     set_light(model, from);
-    cluster_light_average(clusters, model->forest, model->forest->radiosity,
-                          clusters->sent);
     node_links_transfer(links, model, model->forest->radiosity,
                         flux_unit_for(model->area));
     set_light(model, to);

@@ -122,7 +122,7 @@ static void test_dealing(void)
         forest->radiosity[first_q + k] = (struct rgb){{8.0 * (k + 1), 0.0, 4.0}};
     }
     forest_average(forest);
-    forest_bound(forest);
+    forest_bound(forest, NULL, forest->count);
     struct link link = {.p = 2, .q = 4, .area = 0.5f, .parts_p = {128, 0, 96},
                         .parts_q = {0, 0, 64}, .seen = LINK_ALL_SEEN};
     struct link_list list = {0};
