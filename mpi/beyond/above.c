@@ -110,12 +110,12 @@ static double part_of(const struct solver *solver, int32_t node)
            (double)roots / tree->root_count;
 }
 
-/* Finds the branches of a node, and the clusters above these: a branch has a quarter of
+/* Finds the branches of a node, and the clusters above these: a branch has half of
  * a rank's part at most, or is a root. Returns their number; `nodes` has room for all. */
 static int32_t find_branches(struct solver *solver, int32_t node, int32_t *nodes)
 {
     struct branches *branches = solver->beyond->branches;
-    double most = 0.5 / solver->comm->size;
+    double most = 1.0 / solver->comm->size;
     if (!node_is_cluster(node) || part_of(solver, node) <= most) {
         *nodes = node;
         return 1;
