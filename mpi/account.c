@@ -111,31 +111,6 @@ static int64_t peak_memory(void)
     return 0;
 }
 
-static void report_seconds(const struct account *account, const struct comm *comm,
-                           struct stats *stats)
-{
-    double *all = comm_gather_each(comm, account->seconds, sizeof account->seconds);
-    for (int phase = 0; phase < PHASE_COUNT; phase++) {
-        struct spread *spread = &stats->seconds[phase];
-        *spread = (struct spread){all[phase], 0.0, all[phase]};
-        for (int r = 0; r < comm->size; r++) {
-            double seconds = all[r * PHASE_COUNT + phase];
-            spread->min = fmin(spread->min, seconds);
-            spread->mean += seconds / comm->size;
-            spread->max = fmax(spread->max, seconds);
-        }
-    }
-    alloc_free(all);
-}
-
-/* An index of stats->links_of. */
-static int kind_of(const struct link *link)
-{
-    if (link_is_open(link))
-        return 0;
-    return link->seen == LINK_ALL_SEEN ? 1 : link->seen > 0 ? 2 : 3;
-}
-
 static void report_counts(const struct account *own, const struct comm *comm,
                           const struct model *model, const struct link_list *links,
                           struct stats *stats)
@@ -148,8 +123,11 @@ static void report_counts(const struct account *own, const struct comm *comm,
     for (int k = 0; k < CARGO_COUNT; k++)
         stats->messages_with[k] = (int64_t)comm_largest(comm, (double)own->messages[k]);
     memcpy(stats->bytes_of, own->bytes, sizeof stats->bytes_of);
-    for (int64_t i = 0; i < links->count; i++)
-        stats->links_of[kind_of(&links->items[i])]++;
+    for (int64_t i = 0; i < links->count; i++) {
+        int seen = links->items[i].seen;
+        int kind = seen == LINK_ALL_SEEN ? 1 : seen > 0 ? 2 : 3;
+        stats->links_of[link_is_open(&links->items[i]) ? 0 : kind]++;
+    }
     comm_add(comm, sum, sizeof sum / sizeof *sum);
     comm_add(comm, stats->bytes_of, CARGO_COUNT);
     comm_add(comm, stats->links_of, 4);
@@ -174,5 +152,16 @@ void account_report(struct account *account, const struct comm *comm,
     account->proxies = comm_gather_each(comm, &account->held, sizeof *account->proxies);
     stats->proxies = account->proxies;
     report_counts(account, comm, model, links, stats);
-    report_seconds(account, comm, stats);
+    double *all = comm_gather_each(comm, account->seconds, sizeof account->seconds);
+    for (int phase = 0; phase < PHASE_COUNT; phase++) {
+        struct spread *spread = &stats->seconds[phase];
+        *spread = (struct spread){all[phase], 0.0, all[phase]};
+        for (int r = 0; r < comm->size; r++) {
+            double seconds = all[r * PHASE_COUNT + phase];
+            spread->min = fmin(spread->min, seconds);
+            spread->mean += seconds / comm->size;
+            spread->max = fmax(spread->max, seconds);
+        }
+    }
+    alloc_free(all);
 }

@@ -3,16 +3,6 @@
 
 #include "geom/signals.h"
 
-static int64_t own_new_patches(const struct solver *solver)
-{
-    const struct homes *homes = &solver->homes;
-    int64_t count = 0;
-    while (count < homes->count &&
-           homes->patches[homes->count - 1 - count] >= solver->turn.first_new)
-        count++;
-    return count;
-}
-
 void solver_push_pull_jacobi(struct solver *solver)
 {
     struct push_pull_sums sums =
@@ -27,13 +17,17 @@ void solver_push_pull_jacobi(struct solver *solver)
 
 void solver_push_pull(struct solver *solver)
 {
+    const struct homes *homes = &solver->homes;
+    int64_t old = homes->count; /* own patches not made in this pass */
     account_begin(&solver->account, PHASE_PUSH_PULL);
     solver->turn.iteration++;
     solver->steps.push_pull(solver);
     solver->turn.complete = solver->comm->size == 1;
     solver->ballot.split = solver->turn.split_here;
     solver->ballot.links = solver->links.count;
-    solver->ballot.divided = own_new_patches(solver);
+    while (old > 0 && homes->patches[old - 1] >= solver->turn.first_new)
+        old--;
+    solver->ballot.divided = homes->count - old;
     solver->ballot.stop = signals_seen();
     account_end(&solver->account, PHASE_PUSH_PULL);
 }

@@ -51,30 +51,24 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
     return vote;
 }
 
-/* Enters the work of the iteration into the ledger. */
-static void record_iteration(struct solver *solver)
+struct vote solver_vote(struct solver *solver)
 {
+    const struct comm *comm = solver->comm;
     struct account *account = &solver->account;
+    struct ballot sum = {0}, *each;
+    each = comm_gather_each(comm, &solver->ballot, sizeof *each);
+    for (int r = 0; r < comm->size; r++)
+        ballot_add(&sum, &each[r]);
+    alloc_free(each);
+    account->bytes[CARGO_LIGHT] += (comm->size - 1) * (int64_t)sizeof sum;
+    solver->ballot = sum;
+    solver->turn.stop = (int)sum.stop;
+    struct vote vote = solver->steps.vote(solver, &sum);
     int64_t now[] = {account->bytes[CARGO_FLUX], account->bytes[CARGO_LIGHT],
                      account->copied}, *before = account->recorded;
     account_work(account, WORK_TRANSFER, solver->links.seen, now[0] - before[0]);
     account_work(account, WORK_OWN, account->leaves, now[1] - before[1]);
     account_work(account, WORK_PATCHES, now[2] - before[2], 0);
     memcpy(before, now, sizeof now);
-}
-
-struct vote solver_vote(struct solver *solver)
-{
-    const struct comm *comm = solver->comm;
-    struct ballot sum = {0}, *each;
-    each = comm_gather_each(comm, &solver->ballot, sizeof *each);
-    for (int r = 0; r < comm->size; r++)
-        ballot_add(&sum, &each[r]);
-    alloc_free(each);
-    solver->account.bytes[CARGO_LIGHT] += (comm->size - 1) * (int64_t)sizeof sum;
-    solver->ballot = sum;
-    solver->turn.stop = (int)sum.stop;
-    struct vote vote = solver->steps.vote(solver, &sum);
-    record_iteration(solver);
     return vote;
 }

@@ -8,7 +8,7 @@
 #include "io/run/progress.h"
 #include "io/scene/camera.h"
 #include "io/scene/points.h"
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 #include "mpi/node.h"
 
 struct run {

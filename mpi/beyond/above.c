@@ -6,12 +6,13 @@
  * The clusters above all branches, some hundred, are on all ranks: the radiosities of the
  * branches go to all, and the flux of these clusters is summed over all. Averages are the
  * same sums whoever computes them. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/above.h"
 
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "mpi/assign.h"
+#include "mpi/beyond/beyond.h"
 
 /* --- building --- */
 
@@ -79,22 +80,6 @@ void above_create(struct solver *solver)
     solver->model.clusters = cluster_light_create(beyond->tree);
     solver->model.forest->above = alloc_array((size_t)scene_root_count(scene),
                                               sizeof *solver->model.forest->above);
-}
-
-void above_free(struct solver *solver)
-{
-    struct branches *branches = solver->beyond->branches;
-    if (!branches) /* no tree */
-        return;
-    alloc_free(branches->owner);
-    alloc_free(branches->top);
-    alloc_free(branches->own);
-    route_free(&branches->all);
-    alloc_free(branches);
-    cluster_light_destroy(solver->model.clusters);
-    cluster_tree_destroy(solver->beyond->tree);
-    spaces_destroy(solver->beyond->spaces);
-    node_block_destroy(&solver->beyond->tree_block);
 }
 
 /* --- step 3 --- */

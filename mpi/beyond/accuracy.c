@@ -9,7 +9,7 @@
  * and the same is asked of the error relative to a leaf's own light, in the median of all
  * leaves: a lawn in the sun does not make the rooms of a house right.
  *
- * The gather estimates the two parts (mpi/beyond/gather_error.c). Where E^2 exceeds the
+ * The gather estimates the two parts (rad/beyond/gather/claim.c). Where E^2 exceeds the
  * sum of their squares by more than chance, the mesh has the surplus. If the claim is
  * above the goal, the next round brings E to AIM of it, which leaves room for the
  * deviation, with both parts alike unless one is small already: noise falls like N^-0.6
@@ -25,14 +25,16 @@
  *
  * Rejected: aiming by slopes measured between rounds. With two or three rounds slopes are
  * mostly noise. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/accuracy.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "mpi/memory.h"
+#include "mpi/beyond/beyond.h"
 #include "mpi/beyond/spotcheck.h"
+#include "mpi/beyond/step9.h"
+#include "mpi/memory.h"
 
 enum { ROUNDS_MOST = 12 };
 
@@ -267,16 +269,15 @@ static enum finish judge(struct solver *solver, struct vote *vote,
     return FINISH_AGAIN;
 }
 
-enum finish solver_finish(struct solver *solver, struct vote *vote)
+enum finish accuracy_finish(struct solver *solver, struct vote *vote)
 {
     const struct forest *forest = solver->model.forest;
     struct linked linked = {.vote = *vote, .count = forest->count};
-    bool measures = solver->model.criterion.accuracy > 0.0;
-    size_t kept = measures ? (size_t)linked.count : 0;
-    linked.radiosity = alloc_array(kept, sizeof *linked.radiosity);
-    memcpy(linked.radiosity, forest->radiosity, kept * sizeof *linked.radiosity);
-    enum finish finish = solver_final_gather(solver, vote) ? FINISH_DONE : FINISH_STOPPED;
-    if (measures && finish == FINISH_DONE)
+    size_t bytes = (size_t)linked.count * sizeof *linked.radiosity;
+    linked.radiosity = alloc_array((size_t)linked.count, sizeof *linked.radiosity);
+    memcpy(linked.radiosity, forest->radiosity, bytes);
+    enum finish finish = solver_finish(solver, vote);
+    if (finish == FINISH_DONE)
         finish = judge(solver, vote, &linked);
     alloc_free(linked.radiosity);
     return finish;

@@ -1,19 +1,7 @@
-/* Exchanges steps of the paper's solver for phr's own, as the criterion names them. */
+/* The state of a rank beyond the paper's, and its part of the report. */
 #include "mpi/beyond/beyond.h"
 
 #include "geom/alloc.h"
-
-/* Nodes receive by their clusters, too: twice as much fits into the unit. */
-static void transfer(struct solver *solver, const struct rgb *vector)
-{
-    struct rgb *means = above_begin(solver, vector);
-    account_begin(&solver->account, PHASE_SOLVE);
-    double largest = 2.0 * solver_largest(solver, vector);
-    solver->flux = flux_unit_for(largest * solver->model.whole_area);
-    solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
-    account_end(&solver->account, PHASE_SOLVE);
-    above_end(solver, means);
-}
 
 static void report(const struct solver *solver, struct stats *stats)
 {
@@ -38,10 +26,26 @@ void beyond_free_vectors(struct solver *solver)
         cluster_light_free_vectors(solver->model.clusters);
 }
 
+static void free_tree(struct solver *solver)
+{
+    struct branches *branches = solver->beyond->branches;
+    if (!branches) /* no tree */
+        return;
+    alloc_free(branches->owner);
+    alloc_free(branches->top);
+    alloc_free(branches->own);
+    route_free(&branches->all);
+    alloc_free(branches);
+    cluster_light_destroy(solver->model.clusters);
+    cluster_tree_destroy(solver->beyond->tree);
+    spaces_destroy(solver->beyond->spaces);
+    node_block_destroy(&solver->beyond->tree_block);
+}
+
 static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;
-    above_free(solver);
+    free_tree(solver);
     conjugate_free(beyond->descent);
     alloc_free(beyond->descent);
     alloc_free(beyond->answer->error);
@@ -68,40 +72,4 @@ const struct answer *beyond_answer(const struct solver *solver)
 {
     static const struct answer NONE = {.error = NULL};
     return solver->beyond ? solver->beyond->answer : &NONE;
-}
-
-struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree,
-                             const struct criterion *criterion)
-{
-    struct solver *solver =
-        solver_create(comm, scene, octree, criterion, method_of(criterion));
-    bool conjugate = criterion->solver == SOLVER_CG;
-    bool tree = criterion->linking == LINKING_TREE;
-    struct steps *steps = &solver->steps;
-    if (solver->model.method.keep_link) {
-        steps->prepare = bounds_prepare;
-        steps->learn = bounds_learn;
-    }
-    if (!conjugate && !tree)
-        return solver;
-    beyond_attach(solver);
-    if (conjugate) {
-        steps->begin = descent_begin;
-        steps->vote = descent_vote;
-    }
-    if (tree) {
-        above_create(solver);
-        steps->deal = above_deal;
-        steps->transfer = transfer;
-        steps->scatter = above_scatter;
-        steps->collect = above_collect;
-        if (criterion->final_gather > 0)
-            steps->finish = solver_finish;
-    }
-    if (conjugate) {
-        solver->beyond->scatter = steps->scatter;
-        steps->scatter = NULL; /* after the vote, which changes the light */
-    }
-    return solver;
 }

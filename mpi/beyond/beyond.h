@@ -49,11 +49,6 @@ struct beyond {
     struct answer *answer;
 };
 
-/* Collective. Creates a solver for any criterion. Borrows comm, scene and octree. */
-struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree,
-                             const struct criterion *criterion);
-
 /* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
@@ -62,44 +57,5 @@ void beyond_free_vectors(struct solver *solver);
 
 /* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
-
-/* The tree above the roots, the same on all ranks; collective. Builds
- * solver->beyond->tree, and the light and the arrays of a tree. */
-void above_create(struct solver *solver);
-void above_free(struct solver *solver);
-
-/* Step 3 with a tree: homes of roots and of clusters. */
-void above_deal(struct solver *solver, int *owner);
-
-/* Step 5, before a transfer: clears the flux of clusters, and averages a vector that is
- * not the light of step 7. Returns these means, for above_end(), after the transfer.
- * Collective, then: sums flux and pushes it down to the own roots. */
-struct rgb *above_begin(struct solver *solver, const struct rgb *vector);
-void above_end(struct solver *solver, struct rgb *means);
-void above_collect(struct solver *solver);
-
-/* Collective. Step 4, before a pass and before its levels: bounds on the light of the
- * ends of links. */
-void bounds_prepare(struct solver *solver);
-void bounds_learn(struct solver *solver, const struct route *originals,
-                  const struct route *proxies);
-
-/* Collective. Step 7 with a tree. */
-void above_scatter(struct solver *solver);
-
-/* Steps 5 and 8 with conjugate residuals: when links have changed; and after each
- * iteration. */
-void descent_begin(struct solver *solver);
-struct vote descent_vote(struct solver *solver, const struct ballot *sum);
-
-/* Collective. Step 9, phr's own, after the last vote: the final gather. Traces rows for
- * all leaves and solves for light by them; from then on `vote` is on this light. Returns
- * false on all ranks if a signal has ended the step. Pre: there are clusters. */
-bool solver_final_gather(struct solver *solver, struct vote *vote);
-
-/* Collective. Step 9, if there is one, and with --accuracy the verdict on its answer.
- * After FINISH_AGAIN criterion and vote are those of the links, for more passes, or for
- * this step again with more rays. */
-enum finish solver_finish(struct solver *solver, struct vote *vote);
 
 #endif

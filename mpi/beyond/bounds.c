@@ -5,9 +5,10 @@
  * homes find the means by step 7, and ranges of their patches. Other ranks learn both as
  * they learn radiosities: for the ends of their links before the pass, and for the
  * children of these before each level. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/bounds.h"
 
 #include "geom/alloc.h"
+#include "mpi/beyond/beyond.h"
 #include "rad/beyond/range.h"
 
 void bounds_learn(struct solver *solver, const struct route *originals,

@@ -1,10 +1,11 @@
 /* Steps 5 and 8 with conjugate residuals (rad/beyond/conjugate.c): iterations go on over
  * the same links until the bound on the remaining error is small enough. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/descent.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "mpi/beyond/beyond.h"
 
 /* A solution has diverged if its negative light is more than the remaining error can make
  * and 1 / NEGATIVE of all light: with row sums too large for a solution, the equation may

@@ -1,16 +1,94 @@
-/* Looks at leaves by all ranks, round by round, between which the mesh splits leaves. The
- * looks are dealt by the work predicted for them, and all ranks learn all looks. */
+/* The mesh of a final gather, on all ranks.
+ *
+ * Roots that may have exact rows are found first: nothing stands between such a root and
+ * the roots it faces. Exact rows cost much, and their mesh is the links', which is good
+ * where nothing casts shadows: so there are exact rows only if half of the scene's area
+ * is open. Proofs cost much as well, and most scenes are not open: segments show first
+ * where a root is not, and the search ends once half of the area cannot be had.
+ *
+ * Then all ranks look at leaves, round by round, between which the mesh splits leaves.
+ * The looks are dealt by the work predicted for them, and all ranks learn all looks. */
 #include "mpi/beyond/mesh.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "mpi/beyond/open.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
 
 enum { ROUNDS = 6 };
+
+/* --- open roots --- */
+
+struct root_area {
+    double area; /* square scene units */
+    int32_t root;
+};
+
+/* Largest first. */
+static int compare_areas(const void *left, const void *right)
+{
+    const struct root_area *a = left, *b = right;
+    int order = (a->area < b->area) - (a->area > b->area);
+    return order != 0 ? order : (a->root > b->root) - (a->root < b->root);
+}
+
+/* Returns all roots, largest first. */
+static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
+{
+    struct root_area *sorted = alloc_array((size_t)roots, sizeof *sorted);
+    for (int32_t root = 0; root < roots; root++)
+        sorted[root] = (struct root_area){scene_root_area(scene, root), root};
+    qsort(sorted, (size_t)roots, sizeof *sorted, compare_areas);
+    return sorted;
+}
+
+/* Collective. Finds the open roots, proved to be so if `proof`; each rank examines some.
+ * True if these have half of the scene's area. Large roots come first, those of about the
+ * same area together, until half is out of reach. */
+static bool half_is_open(const struct solver *solver, struct final_gather *gather,
+                         const struct root_area *sorted, bool proof, int64_t *open)
+{
+    const struct model *model = &solver->model;
+    const struct comm *comm = solver->comm;
+    int32_t roots = scene_root_count(model->scene), end;
+    double blocked = 0.0;
+    for (int32_t begin = 0; begin < roots && 2.0 * blocked <= model->area; begin = end) {
+        for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;
+             end++)
+            open[end] = end % comm->size == comm->rank && !stop_is_asked() &&
+                        final_gather_root_is_open(gather, sorted[end].root, proof);
+        comm_add(comm, open + begin, end - begin);
+        for (int32_t i = begin; i < end; i++)
+            blocked += open[i] ? 0.0 : sorted[i].area;
+    }
+    return 2.0 * blocked <= model->area;
+}
+
+/* Collective. Returns 1 for each root proved to have nothing between itself and the roots
+ * it faces, else 0: [roots], to be freed. All are 0 if the open ones have less than half
+ * of the scene's area. */
+static uint8_t *find_open_roots(struct solver *solver, struct final_gather *gather)
+{
+    int32_t roots = scene_root_count(solver->model.scene);
+    int64_t before = final_gather_work(gather);
+    struct root_area *sorted = sort_roots(solver->model.scene, roots);
+    uint8_t *open = alloc_array((size_t)roots, sizeof *open);
+    int64_t *found = alloc_array((size_t)roots, sizeof *found);
+    if (half_is_open(solver, gather, sorted, false, found) &&
+        half_is_open(solver, gather, sorted, true, found))
+        for (int32_t i = 0; i < roots; i++)
+            open[sorted[i].root] = found[i] != 0;
+    account_work(&solver->account, WORK_FINAL_GATHER,
+                 final_gather_work(gather) - before, 0);
+    alloc_free(found);
+    alloc_free(sorted);
+    return open;
+}
+
+/* --- looks --- */
 
 struct looking {
     struct meshing *meshing;
@@ -69,7 +147,7 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
     struct model *model = &solver->model;
     struct final_gather *gather =
         final_gather_create(model, model->criterion.final_gather, NULL);
-    uint8_t *open = solver_find_open_roots(solver, gather);
+    uint8_t *open = find_open_roots(solver, gather);
     struct meshing meshing = {.model = model, .gather = gather, .mesh = mesh,
                               .open = open,
                               .patches_most = patches_most(&solver->memory, links)};

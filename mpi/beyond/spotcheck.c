@@ -38,8 +38,6 @@
  *
  * Rejected: the difference of two solutions, of which the finer is taken for the truth.
  * Both lack much of the same light, all the more where --max-level is in the way. */
-#include "mpi/beyond/beyond.h"
-#include "mpi/beyond/gathering.h"
 #include "mpi/beyond/spotcheck.h"
 
 #include <math.h>
@@ -47,6 +45,8 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
+#include "mpi/beyond/beyond.h"
+#include "rad/beyond/gather/claim.h"
 #include "rad/beyond/paths.h"
 
 /* Draws in a batch, batches at least and at most; paths for each half. */
@@ -226,7 +226,7 @@ static double claim_of(const struct checking *c, int32_t leaf, struct rgb b)
 {
     double most = fmax(b.band[0], fmax(b.band[1], b.band[2]));
     double error = (double)c->solver->beyond->answer->error[leaf];
-    double claim = gathering_deviation(error) / most;
+    double claim = claim_deviation(error) / most;
     return most > 0.0 ? claim * claim : 0.0;
 }
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 #include "geom/alloc.h"
 #include "io/run/options.h"
 #include "mpi/balance.h"

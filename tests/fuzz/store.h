@@ -8,7 +8,7 @@
 #ifndef TESTS_FUZZ_STORE_H
 #define TESTS_FUZZ_STORE_H
 
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 #include "geom/hash.h"
 #include "geom/little.h"
 #include "io/run/store.h"

@@ -304,7 +304,7 @@ static double reflected_error(struct stage *stage, double deviation, bool reflec
     struct rgb *lamps = alloc_array(count, sizeof *lamps);
     float *error = alloc_array(count, sizeof *error);
     for (size_t p = 0; p < count; p++)
-        error[p] = (float)(2.5 * deviation); /* as mpi/beyond/gather_error.c tells */
+        error[p] = (float)(2.5 * deviation); /* as rad/beyond/gather/claim.c tells */
     shading_destroy(stage->shading);
     stage->shading =
         shading_create(stage->forest, stage->octree, reflected ? lamps : NULL, error,

@@ -3,7 +3,7 @@
  * kind, version, scene or setting is refused with the reason; so is one that is cut off
  * or changed at any byte; and numbers that no run could have are refused though the
  * checksum is right. Several ranks: tests/67-restart.sh. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 #include "tests/fuzz/store.h"
 
 #include "tests/load.h"

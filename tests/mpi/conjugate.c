@@ -2,7 +2,7 @@
  * sums against Gaussian elimination: a made-up forest with random
  * links, whose form factors are written down here once more as a dense matrix. On any
  * number of ranks; rank 0 reports. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <sys/mman.h>
 
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 #include "mpi/broadcast.h"
 #include "mpi/migrate.h"
 

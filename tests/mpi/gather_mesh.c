@@ -9,7 +9,7 @@
 
 /* A floor below a small lamp, and a small black box because of which rays are needed; the
  * links split nothing. Leaves are to be split until A times the variance of their light
- * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in rad/beyond/gather/mesh.c),
+ * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in gather/mesh.c),
  * and no further. Chance moves the threshold by a factor of two at most. */
 static void test_mesh(double epsilon)
 {

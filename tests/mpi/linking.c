@@ -1,7 +1,7 @@
 /* Tests of step 2 by pairs, on any number of ranks: all roots that see each other are
  * linked, as one by one, and no other; pair number k is linked by rank k mod P. To be run
  * with mpiexec; rank 0 reports. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/create.h"
 
 #include <string.h>
 

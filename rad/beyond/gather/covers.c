@@ -99,7 +99,8 @@ void receiver_find_outside(struct receiver *r)
     }
     int outside = r->rays - r->sums->inside;
     if (outside > 0)
-        r->row->kept = 1.0f - fminf(1.0f, (float)(r->escaped + lost) / (float)outside);
+        r->row->cover.kept =
+            1.0f - fminf(1.0f, (float)(r->escaped + lost) / (float)outside);
 }
 
 void receiver_find_covers(struct receiver *r)
@@ -109,9 +110,9 @@ void receiver_find_covers(struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
-    r->row->bare = 0.0f;
-    r->row->outside = 1.0f - (float)r->sums->inside / (float)r->rays;
-    r->row->open = r->row->outside - (float)r->sums->in_gap / (float)r->rays;
+    r->row->cover.bare = 0.0f;
+    r->row->cover.outside = 1.0f - (float)r->sums->inside / (float)r->rays;
+    r->row->cover.open = r->row->cover.outside - (float)r->sums->in_gap / (float)r->rays;
     if (r->sums->inside == r->rays ||
         (r->gather->sums->count == 0 && !(rgb_sum(r->row->source) > 0.0)))
         return;
@@ -124,6 +125,6 @@ void receiver_find_covers(struct receiver *r)
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
             hit.triangle != r->facet.input && (hit.front || r->sums->inside == 0);
     }
-    double share = (double)covered / BARE_POINTS / (double)r->row->outside;
-    r->row->bare = 1.0f - (float)fmin(1.0, share);
+    double share = (double)covered / BARE_POINTS / (double)r->row->cover.outside;
+    r->row->cover.bare = 1.0f - (float)fmin(1.0, share);
 }

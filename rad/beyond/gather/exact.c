@@ -345,7 +345,7 @@ static bool close_row(struct receiver *r)
         (partial && ray_comes_from_inside(r, point_above(x, normal), normal)))
         return false;
     r->gather->counts.exact++;
-    r->row->kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
+    r->row->cover.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
     r->gather->counts.escaped += partial;
     for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)

@@ -36,6 +36,14 @@ struct gather_sums {
                         if there is one */
 };
 
+/* What covers a leaf: things standing on it, and faces in its plane. Shares, 1. */
+struct cover {
+    float outside; /* of the leaf outside of things */
+    float open;    /* of the leaf outside of things and of narrow gaps */
+    float bare;    /* of `outside` not covered by faces in its plane */
+    float kept;    /* of the leaf's light arriving on fronts, by where its own rays end */
+};
+
 /* The form factors from a leaf to all patches in its view. */
 struct gather_row {
     int32_t leaf;
@@ -47,11 +55,7 @@ struct gather_row {
     double of_segments[BANDS]; /* the part of `chance` by segments to lamps */
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
-    float outside;     /* share of the leaf outside of things, 1 */
-    float open;        /* share of the leaf outside of things and of narrow gaps, 1 */
-    float bare;        /* share of `outside` not covered by faces in its plane, 1 */
-    float kept;        /* share of the leaf's light arriving on fronts, by where its own
-                          rays end, 1 */
+    struct cover cover;
 };
 
 /* A leaf at points met by rays too near for its mean to hold: their paths went on from

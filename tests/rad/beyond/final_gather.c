@@ -20,7 +20,8 @@ static void test_furnished(void)
     for (int64_t k = 0; k < g.s.solver->model.forest->count; k++)
         g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
     for (int64_t i = 0; i < g.gather->count; i++)
-        if (g.gather->rows[i].bare == 1.0f && g.gather->rows[i].outside == 1.0f)
+        if (g.gather->rows[i].cover.bare == 1.0f &&
+            g.gather->rows[i].cover.outside == 1.0f)
             worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
     tap_ok(worst <= 2e-6 && g.gather->counts.escaped == 0,
            "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather->count,
@@ -160,9 +161,9 @@ static void test_covered(void)
     struct trial g = gather_scene(&soup, "--max-level 0", 16);
     double bare = 0.0;
     for (int64_t i = 0; i < 128; i++)
-        bare += (double)g.gather->rows[i].bare / 128.0;
+        bare += (double)g.gather->rows[i].cover.bare / 128.0;
     tap_ok(fabs(bare - 0.75) < 1e-6, "of a wall with a picture in it %.3f is bare", bare);
-    tap_ok(g.gather->rows[128].bare == 1.0f, "as is all of the picture");
+    tap_ok(g.gather->rows[128].cover.bare == 1.0f, "as is all of the picture");
     trial_free(&g);
 }
 
@@ -184,7 +185,7 @@ static void test_column(double height, double outside)
     struct trial g = gather_scene(&soup, "--max-level 0", 256);
     double share = 0.0;
     for (int64_t i = 0; i < 32; i++)
-        share += (double)g.gather->rows[i].outside / 32.0;
+        share += (double)g.gather->rows[i].cover.outside / 32.0;
     tap_ok(fabs(share - outside) < 0.002,
            "a column of height %g stands on a floor: %.4f of it is outside", height,
            share);
@@ -204,9 +205,9 @@ static void test_pillar(void)
     for (int32_t i = 0; i < 12; i++) {
         struct vec3 normal = scene_root_plane(g.s.scene, i).normal;
         if (fabs(normal.z) > 0.5)
-            level += (double)g.gather->rows[i].outside / 4.0;
+            level += (double)g.gather->rows[i].cover.outside / 4.0;
         else if (normal.x + normal.y > 0.5)
-            upright += (double)g.gather->rows[i].outside / 4.0;
+            upright += (double)g.gather->rows[i].cover.outside / 4.0;
     }
     tap_ok(fabs(level - 0.84) < 0.01 && fabs(upright - 0.6) < 0.01,
            "a pillar in a corner: %.3f of floor and ceiling are outside, %.3f of walls",
@@ -228,7 +229,7 @@ static void test_board(double height, double open)
     for (int64_t i = 0; i < 12; i++) {
         double up = scene_root_plane(g.s.scene, (int32_t)i).normal.z;
         *(up > 0.5 ? &share : &others) +=
-            (double)g.gather->rows[i].open / (up > 0.5 ? 2.0 : 10.0);
+            (double)g.gather->rows[i].cover.open / (up > 0.5 ? 2.0 : 10.0);
     }
     tap_ok(fabs(share - open) < 0.015 && fabs(others - 1.0) < 1e-9,
            "a board at the height %g leaves %.3f of a floor open, and of all else %g",

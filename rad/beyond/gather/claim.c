@@ -5,12 +5,11 @@
  * their root. The first is taken from how B varies in the parent, the second from the
  * scatter of the light of single rays. The part of B missing from the solution comes on
  * top: a furnace, whose rows are exact, has no other error. */
-#include "mpi/beyond/gathering.h"
+#include "rad/beyond/gather/claim.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "mpi/beyond/beyond.h"
 
 /* The light of an undivided root varies by about the first part, or the second times its
  * size over its distance: seen from near, a root may be lit unlike its mean. */
@@ -30,16 +29,16 @@ enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
  * from the mean over its parent; of undivided roots, a part of the reflected
  * radiosity. */
-static struct rgb variation_of(const struct gathering *g, int64_t place, struct vec3 from)
+static struct rgb variation_of(const struct equation *e, int64_t place, struct vec3 from)
 {
-    const struct forest *forest = g->solver->model.forest;
-    int32_t patch = g->gather->order[place], parent = forest->patches[patch].parent;
-    struct rgb base = parent >= 0 ? g->radiosity[g->gather->place[parent]]
+    const struct forest *forest = e->gather->model->forest;
+    int32_t patch = e->gather->order[place], parent = forest->patches[patch].parent;
+    struct rgb base = parent >= 0 ? e->radiosity[e->gather->place[parent]]
                                   : forest_material(forest, patch)->emission;
-    struct rgb deviation = rgb_sub(g->radiosity[place], base);
+    struct rgb deviation = rgb_sub(e->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
-        struct vec3 apart = vec3_sub(g->gather->near->leaves[patch].middle, from);
+        struct vec3 apart = vec3_sub(e->gather->near->leaves[patch].middle, from);
         double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
@@ -48,45 +47,35 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
     return deviation;
 }
 
-/* Collective. Variance of H from factors of lamps, and from B varying within leaves seen
- * by rows, (W/m^2)^2. B varies independently in different leaves, so their errors add up
- * as variances. Pre: g->radiosity is the solution. */
-static void variances_by_mesh(struct gathering *g, struct rgb *variance)
+void claim_by_mesh(const struct equation *e, struct rgb *variance)
 {
-    const struct final_gather *gather = g->gather;
-    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
+    const struct final_gather *gather = e->gather;
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct vec3 from = gather->near->leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
             double off = FACTORS * gather->rows[row].lamps.band[c];
-            own[row].band[c] = off * off;
+            variance[row].band[c] = off * off;
         }
         for (; k < gather->rows[row].end; k++) {
-            struct rgb deviation = variation_of(g, gather->terms[k].place, from);
+            struct rgb deviation = variation_of(e, gather->terms[k].place, from);
             for (int c = 0; c < BANDS; c++) {
                 double h = (double)gather->terms[k].weight[c] * deviation.band[c];
-                own[row].band[c] += h * h;
+                variance[row].band[c] += h * h;
             }
         }
     }
-    gathering_share_rows(g, variance);
 }
 
-/* Collective. How much the variance by rays changes as the light of the links gives way
- * to the solution, by leaf, 1: links may have brought much light through a window, or
- * none. As if each ray brought the light of a term: all rays weigh the same. Pre:
- * g->radiosity is the solution, the forest has the light of the links. */
-static void find_changes(struct gathering *g, struct rgb *change)
+void claim_find_changes(const struct equation *e, struct rgb *change)
 {
-    const struct final_gather *gather = g->gather;
-    const struct rgb *linked = g->solver->model.forest->radiosity;
-    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
+    const struct final_gather *gather = e->gather;
+    const struct rgb *linked = gather->model->forest->radiosity;
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct rgb sums[2] = {{{0.0, 0.0, 0.0}}}, squares[2] = {{{0.0, 0.0, 0.0}}};
         struct rgb all = {{0.0, 0.0, 0.0}};
         for (; k < gather->rows[row].end; k++) {
             int32_t place = gather->terms[k].place;
-            const struct rgb *b[] = {&linked[gather->order[place]], &g->radiosity[place]};
+            const struct rgb *b[] = {&linked[gather->order[place]], &e->radiosity[place]};
             for (int c = 0; c < BANDS; c++) {
                 double w = (double)gather->terms[k].weight[c];
                 all.band[c] += w;
@@ -102,25 +91,25 @@ static void find_changes(struct gathering *g, struct rgb *change)
                 variance[i] = squares[i].band[c] -
                               sums[i].band[c] * sums[i].band[c] / all.band[c];
             bool any = variance[0] > 0.0 && variance[1] > 0.0;
-            own[row].band[c] = any ? variance[1] / variance[0] : 1.0;
+            change[row].band[c] = any ? variance[1] / variance[0] : 1.0;
         }
     }
-    gathering_share_rows(g, change);
 }
 
-/* A leaf whose rays have missed a small bright thing found by one of its sisters is too
- * dark, with too small a variance as well: the leaf gets the mean of the sisters', each
- * of one ray, where larger. `rays`: of each leaf; or segments. */
-static void raise_to_sisters(const struct gathering *g, const int *rays,
+/* Raises the variance of a leaf to the mean over its sisters, each by one ray. The rays
+ * of the leaf may have missed a small bright thing that a sister has found: then its
+ * light is too dark, and its own variance too small. `rays`: of each leaf; or
+ * segments. */
+static void raise_to_sisters(const struct equation *e, const int *rays,
                              struct rgb *variance)
 {
-    const struct patch *patches = g->solver->model.forest->patches;
-    size_t count = (size_t)g->solver->model.forest->count;
+    const struct patch *patches = e->gather->model->forest->patches;
+    size_t count = (size_t)e->gather->model->forest->count;
     struct rgb *sums = alloc_array(count, sizeof *sums);
     uint8_t *sisters = alloc_array(count, sizeof *sisters);
     for (int raises = 0; raises < 2; raises++)
-        for (int64_t i = 0; i < g->count; i++) {
-            int32_t parent = patches[g->leaves[i]].parent;
+        for (int64_t i = 0; i < e->count; i++) {
+            int32_t parent = patches[e->mesh->leaves[i]].parent;
             if (parent < 0)
                 continue;
             double *v = variance[i].band;
@@ -153,36 +142,36 @@ static int class_of(double light, double mean)
 }
 
 /* A leaf's H in a band, W/m^2; 0 if the leaf reflects none. */
-static double irradiance_of(const struct gathering *g, int64_t leaf, int band)
+static double irradiance_of(const struct equation *e, int64_t leaf, int band)
 {
-    const struct material *m = gathering_material(g, leaf);
+    const struct material *m = equation_material(e, leaf);
     double rho = m->reflectance.band[band];
-    double b = g->radiosity[g->gather->place[g->leaves[leaf]]].band[band];
+    double b = e->radiosity[equation_place(e, leaf)].band[band];
     return rho > 0.0 ? fmax(0.0, (b - m->emission.band[band]) / rho) : 0.0;
 }
 
 /* Adds each leaf, a band at a time, to a class of its space, of [CLASSES * lit_count()]
  * all classes, whose number `own`, [BANDS * count], tells. Leaves count by their area and
  * the square of their reflectance. */
-static void classify(const struct gathering *g, const struct rgb *halves,
+static void classify(const struct equation *e, const struct rgb *halves,
                      const struct rgb *chance, struct noise *classes, int32_t *own)
 {
-    double *light = alloc_array(BANDS * (size_t)g->count, sizeof *light);
-    double *weight = alloc_array(BANDS * (size_t)g->count, sizeof *weight);
-    size_t spaces = (size_t)lit_count(&g->solver->model);
+    double *light = alloc_array(BANDS * (size_t)e->count, sizeof *light);
+    double *weight = alloc_array(BANDS * (size_t)e->count, sizeof *weight);
+    size_t spaces = (size_t)lit_count(e->gather->model);
     double *sum = alloc_array(spaces, sizeof *sum);
     double *all = alloc_array(spaces, sizeof *all);
-    for (int64_t k = 0; k < BANDS * g->count; k++) {
+    for (int64_t k = 0; k < BANDS * e->count; k++) {
         int64_t i = k / BANDS;
-        int32_t s = gathering_space(g, i);
-        double rho = gathering_material(g, i)->reflectance.band[k % BANDS];
-        light[k] = irradiance_of(g, i, (int)(k % BANDS));
-        weight[k] = g->areas[i] * rho * rho;
+        int32_t s = equation_space(e, i);
+        double rho = equation_material(e, i)->reflectance.band[k % BANDS];
+        light[k] = irradiance_of(e, i, (int)(k % BANDS));
+        weight[k] = e->areas[i] * rho * rho;
         sum[s] += weight[k] * light[k];
         all[s] += weight[k];
     }
-    for (int64_t k = 0; k < BANDS * g->count; k++) {
-        int32_t s = gathering_space(g, k / BANDS);
+    for (int64_t k = 0; k < BANDS * e->count; k++) {
+        int32_t s = equation_space(e, k / BANDS);
         own[k] = CLASSES * s + class_of(light[k], sum[s] / all[s]);
         struct noise *class = &classes[own[k]];
         class->by_halves += weight[k] * halves[k / BANDS].band[k % BANDS];
@@ -218,40 +207,30 @@ static double ratio_of_sequence(const struct noise *classes, int class)
     return ratio / (2.0 - ratio);
 }
 
-/* Collective. Variance of H from the choice of rays: the variance by chance, times the
- * sequence's ratio, estimated over all leaves with about as much light. */
-static void variances_by_rays(struct gathering *g, struct rgb *variance)
+void claim_by_rays(const struct equation *e, const struct rgb *halves,
+                   const struct rgb *change, struct rgb *segments, struct rgb *variance)
 {
-    const size_t bytes = sizeof *variance;
-    struct rgb *halves = alloc_array((size_t)g->count, bytes);
-    struct rgb *lamps = alloc_array((size_t)g->count, bytes);
-    gathering_share_field(g, offsetof(struct gather_row, chance), bytes, variance);
-    gathering_share_field(g, offsetof(struct gather_row, halves), bytes, halves);
-    gathering_share_field(g, offsetof(struct gather_row, of_segments), bytes, lamps);
-    int32_t all = CLASSES * lit_count(&g->solver->model);
+    int32_t all = CLASSES * lit_count(e->gather->model);
     struct noise *classes = alloc_array((size_t)all, sizeof *classes);
     double *ratios = alloc_array((size_t)all, sizeof *ratios);
-    int32_t *own_class = alloc_array(BANDS * (size_t)g->count, sizeof *own_class);
-    classify(g, halves, variance, classes, own_class);
+    int32_t *own_class = alloc_array(BANDS * (size_t)e->count, sizeof *own_class);
+    classify(e, halves, variance, classes, own_class);
     for (int32_t k = 0; k < all; k++)
         ratios[k] = ratio_of_sequence(classes + k / CLASSES * CLASSES, k % CLASSES);
-    find_changes(g, halves);
-    for (int64_t i = 0; i < g->count; i++) {
-        variance[i] = rgb_sub(variance[i], lamps[i]);
+    for (int64_t i = 0; i < e->count; i++) {
+        variance[i] = rgb_sub(variance[i], segments[i]);
         for (int c = 0; c < BANDS; c++)
-            variance[i].band[c] *= halves[i].band[c];
+            variance[i].band[c] *= change[i].band[c];
     }
-    raise_to_sisters(g, g->mesh->rays, variance);
-    raise_to_sisters(g, g->mesh->segments, lamps);
-    for (int64_t i = 0; i < g->count; i++)
-        rgb_add(&variance[i], 1.0, lamps[i]);
-    for (int64_t k = 0; k < BANDS * g->count; k++)
+    raise_to_sisters(e, e->mesh->rays, variance);
+    raise_to_sisters(e, e->mesh->segments, segments);
+    for (int64_t i = 0; i < e->count; i++)
+        rgb_add(&variance[i], 1.0, segments[i]);
+    for (int64_t k = 0; k < BANDS * e->count; k++)
         variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
     alloc_free(own_class);
     alloc_free(ratios);
     alloc_free(classes);
-    alloc_free(lamps);
-    alloc_free(halves);
 }
 
 /* Sums over the reflecting leaves of a space, but the first by area, (W/m^2)^2. */
@@ -310,38 +289,32 @@ static double error_exceeded(const double *deviations, int64_t count, double par
     return high;
 }
 
-double gathering_deviation(double error)
+double claim_deviation(double error)
 {
     return error / BOUND;
 }
 
-void gathering_estimate_errors(struct gathering *g, double remaining)
+void claim_errors(const struct light_balance *balance, double remaining,
+                  const struct rgb *mesh, const struct rgb *rays, float *error,
+                  struct gathered *told)
 {
-    struct solver *solver = g->solver;
-    size_t count = (size_t)g->count;
-    struct rgb *mesh = alloc_array(count, sizeof *mesh);
-    struct rgb *rays = alloc_array(count, sizeof *rays);
+    const struct equation *e = balance->equation;
+    size_t count = (size_t)e->count;
     double *own_errors = alloc_array(3 * count, sizeof *own_errors);
     double *all = own_errors, *by_rays = all + count, *by_mesh = by_rays + count;
-    int32_t spaces = lit_count(&solver->model);
+    int32_t spaces = lit_count(e->gather->model);
     struct space_error *sums = alloc_array((size_t)spaces, sizeof *sums);
-    struct gathered *told = &solver->beyond->answer->counts;
     int64_t listed = 0;
-    variances_by_mesh(g, mesh);
-    variances_by_rays(g, rays);
-    alloc_free(solver->beyond->answer->error);
-    float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
-    solver->beyond->answer->error = error;
-    for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = gathering_material(g, i);
-        struct rgb b = g->radiosity[g->gather->place[g->leaves[i]]];
-        struct space_error *sum = &sums[gathering_space(g, i)];
+    for (int64_t i = 0; i < e->count; i++) {
+        const struct material *m = equation_material(e, i);
+        struct rgb b = e->radiosity[equation_place(e, i)];
+        struct space_error *sum = &sums[equation_space(e, i)];
         double largest = 0.0, own = 0.0, square[2] = {0.0, 0.0};
-        double lacking = remaining + g->flows[gathering_balance(g, i)].unsure;
+        double lacking = remaining + balance_of(balance, i)->unsure;
         sum->lacking = lacking;
         sum->leaves += rgb_sum(m->reflectance) > 0.0;
         for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c], h = irradiance_of(g, i, c);
+            double rho = m->reflectance.band[c], h = irradiance_of(e, i, c);
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             double reflected = b.band[c] - m->emission.band[c];
             double lacks = lacking * b.band[c];
@@ -349,13 +322,13 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
                            BOUND * sqrt(deviation * deviation + lacks * lacks));
             square[0] += rho * rho * rays[i].band[c];
             square[1] += rho * rho * mesh[i].band[c];
-            sum->light += g->areas[i] * reflected * reflected;
+            sum->light += e->areas[i] * reflected * reflected;
             own += rho * rho * h * h;
         }
-        sum->by_rays += g->areas[i] * square[0];
-        sum->by_mesh += g->areas[i] * square[1];
-        error[g->leaves[i]] = (float)largest;
-        bool shown = g->covers[i].outside > 0.0f; /* nothing hides all of it */
+        sum->by_rays += e->areas[i] * square[0];
+        sum->by_mesh += e->areas[i] * square[1];
+        error[e->mesh->leaves[i]] = (float)largest;
+        bool shown = e->covers[i].outside > 0.0f; /* nothing hides all of it */
         if (!shown || !(square[0] + square[1] + own > 0.0))
             continue;
         all[listed] = sqrt((square[0] + square[1]) / own + lacking * lacking);
@@ -369,6 +342,4 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     sum_errors(sums, spaces, told);
     alloc_free(sums);
     alloc_free(own_errors);
-    alloc_free(rays);
-    alloc_free(mesh);
 }

@@ -1,0 +1,343 @@
+/* Step 9, phr's own: the final gather and its solution, on all ranks.
+ *
+ * 1. The mesh: leaves are looked at and split (mpi/beyond/mesh.c).
+ * 2. Rows: dealt to ranks, which keep what they make (mpi/beyond/stages.c).
+ * 3. The equation of rows is solved, in turns (rad/beyond/gather/equation.h): all ranks
+ *    know all vectors, so only a product with the rows takes an exchange, and scalar
+ *    products are the same on all ranks.
+ * 4. The claim: how wrong each leaf may be (rad/beyond/gather/claim.h). */
+#include "mpi/beyond/step9.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/mesh.h"
+#include "mpi/beyond/stages.h"
+#include "rad/beyond/bicgstab.h"
+#include "rad/beyond/gather/claim.h"
+#include "rad/pushpull.h"
+
+enum { STEPS_MOST = 500 };
+
+/* Turns, at most; the last one only finds what is left. Most end at five, when one
+ * changes nothing. In gaps of rho .999 each leaves .6 of the error. */
+enum { TURNS_MOST = 40 };
+
+/* The part of the residual that each turn leaves: the factors of the next turn change the
+ * residual by as much. */
+static const double LEFT = 0.03;
+
+/* A final gather on one rank. */
+struct gathering {
+    struct solver *solver;
+    struct gather_mesh mesh;
+    struct final_gather *gather;
+    struct equation equation;
+    struct light_balance balance;
+    struct stages stages; /* who has which rows */
+    struct rgb *all;      /* [leaves] buffer: a value of each row, rank by rank */
+    int64_t bytes;        /* of values exchanged by ranks so far */
+};
+
+/* --- exchange --- */
+
+/* The values of this rank's rows, in g->all. */
+static struct rgb *own_values(const struct gathering *g)
+{
+    return g->all + g->stages.at[g->solver->comm->rank];
+}
+
+/* Collective. Brings the value of each row, from g->all, to all ranks, by leaf number:
+ * [leaves]. Rows lie where made, and all ranks know all vectors: this is the only
+ * exchange of a product with the rows. */
+static void share_values(struct gathering *g, struct rgb *values)
+{
+    comm_share(g->solver->comm, g->all, g->stages.counts, g->stages.at, sizeof *g->all);
+    g->bytes += g->equation.count * (int64_t)sizeof *g->all;
+    for (int64_t i = 0; i < g->equation.count; i++)
+        values[i] = g->all[g->stages.place[i]];
+}
+
+/* Collective. Brings a field of each row, `offset` bytes from its beginning, to all
+ * ranks: at most an rgb. */
+static void share_field(struct gathering *g, size_t offset, size_t bytes,
+                        struct rgb *values)
+{
+    for (int64_t row = 0; row < g->gather->count; row++)
+        memcpy(&own_values(g)[row], (const char *)&g->gather->rows[row] + offset, bytes);
+    share_values(g, values);
+}
+
+/* Collective. Adds up integers of all ranks, which go to the sum and back. */
+static void add_up(struct gathering *g, int64_t *values, int64_t count)
+{
+    comm_add(g->solver->comm, values, count);
+    g->bytes += 2 * count * (int64_t)sizeof *values;
+}
+
+/* --- rows --- */
+
+/* Collective. All ranks learn what the rows have met: leaves too near, covers, and which
+ * spaces are closed. */
+static void share_met(struct gathering *g)
+{
+    enum { EACH = (int)(sizeof *g->gather->near->items / sizeof(int64_t)) };
+    struct equation *e = &g->equation;
+    int64_t patches = g->solver->model.forest->count, crossed = g->gather->counts.crossed;
+    struct rgb *covers = alloc_array((size_t)e->count, sizeof *covers);
+    comm_add(g->solver->comm, e->fired, 2 * lit_count(&g->solver->model));
+    comm_add(g->solver->comm, &crossed, 1);
+    add_up(g, &g->gather->near->items->area, EACH * patches);
+    equation_number_near(e);
+    share_field(g, offsetof(struct gather_row, cover), sizeof *e->covers, covers);
+    for (int64_t i = 0; i < e->count; i++)
+        memcpy(&e->covers[i], &covers[i], sizeof *e->covers);
+    equation_find_seen(e);
+    g->balance = balance_start(e, crossed);
+    alloc_free(covers);
+}
+
+/* Collective. False if a signal on any rank has ended the work. */
+static bool make_rows(struct gathering *g)
+{
+    struct solver *solver = g->solver;
+    const struct gather_mesh *mesh = &g->mesh;
+    g->gather = final_gather_create(&solver->model, solver->model.criterion.final_gather,
+                                    mesh->cut);
+    g->equation = equation_start(g->gather, mesh);
+    g->all = alloc_array((size_t)mesh->count, sizeof *g->all);
+    progress_begin(solver->progress, "gathering", -1, 0);
+    stages_make_cuts(solver, g->gather, mesh->leaves, mesh->exact, mesh->count);
+    g->stages = (struct stages){.solver = solver, .gather = g->gather,
+                                .act = equation_make_row, .context = &g->equation,
+                                .work = mesh->work, .count = mesh->count};
+    stages_run(&g->stages);
+    const struct gather_counts *counts = &g->gather->counts;
+    int64_t sums[] = {stop_is_asked(), counts->rays, counts->segments, counts->exact,
+                      final_gather_terms(g->gather), mesh->traced};
+    comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
+    solver->beyond->answer->counts = (struct gathered){
+        .rays = sums[1], .segments = sums[2], .exact = sums[3],
+        .terms = sums[4], .looks = sums[5], .split = mesh->split,
+        .limited = mesh->limited};
+    return sums[0] == 0;
+}
+
+/* --- light --- */
+
+/* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`; with the
+ * source and what lamps lack if `lamps`; in a closed scene as much as leaves. */
+static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
+                        struct rgb *h)
+{
+    equation_show(&g->equation, b, lamps);
+    account_begin(&g->solver->account, PHASE_PRODUCTS);
+    equation_multiply(&g->equation, lamps, own_values(g));
+    account_end(&g->solver->account, PHASE_PRODUCTS);
+    share_values(g, h);
+    if (g->balance.any)
+        balance_close(&g->balance, b, lamps, h);
+}
+
+/* Collective. Finds how bright far receivers see leaves too near. */
+static void find_shown(struct gathering *g, const struct rgb *b)
+{
+    size_t count = BANDS * (size_t)g->equation.near_count;
+    int64_t *watts = alloc_array(count, sizeof *watts);
+    equation_show_means(&g->equation, b);
+    account_begin(&g->solver->account, PHASE_PRODUCTS);
+    equation_add_near(&g->equation, watts);
+    account_end(&g->solver->account, PHASE_PRODUCTS);
+    add_up(g, watts, (int64_t)count);
+    equation_set_shown(&g->equation, watts);
+    alloc_free(watts);
+}
+
+/* Collective. y = x - rho W x. */
+static void reflect(void *context, const struct rgb *x, struct rgb *y)
+{
+    struct gathering *g = context;
+    irradiances(g, x, false, y);
+    for (int64_t i = 0; i < g->equation.count; i++) {
+        const struct material *m = equation_material(&g->equation, i);
+        for (int c = 0; c < BANDS; c++)
+            y[i].band[c] = x[i].band[c] - m->reflectance.band[c] * y[i].band[c];
+    }
+}
+
+/* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
+ * `b`, which becomes the answer but where `b` is below 0. `h` and `r`: buffers. */
+static struct bicgstab take_turn(struct gathering *g, const double *weights,
+                                 struct bicgstab_end end, struct rgb *b, struct rgb *h,
+                                 struct rgb *r, struct rgb *answer)
+{
+    const struct equation *e = &g->equation;
+    irradiances(g, answer, true, h);
+    balance_spread(&g->balance, h);
+    irradiances(g, b, true, h);
+    equation_reflect(e, h, r);
+    for (int64_t i = 0; i < e->count; i++) /* what b leaves, E + rho H - b */
+        r[i] = rgb_sub(r[i], b[i]);
+    struct bicgstab done = bicgstab_solve(reflect, g, weights, e->count, end, b, r);
+    if (done.steps > 0)
+        irradiances(g, b, true, h);
+    for (int64_t i = 0; i < e->count; i++) /* slopes may go below 0 where B has changed */
+        for (int c = 0; c < BANDS; c++)
+            h[i].band[c] = fmax(0.0, h[i].band[c]);
+    if (g->balance.any)
+        balance_absorb(&g->balance, h);
+    equation_reflect(e, h, answer);
+    return done;
+}
+
+/* Collective. Solves the equation in turns, from the links' solution on: `answer`, and
+ * its irradiances `h`. `b` and `r`: buffers. Returns the residual. */
+static double solve(struct gathering *g, struct rgb *b, struct rgb *h, struct rgb *r,
+                    struct rgb *answer)
+{
+    const struct model *model = &g->solver->model;
+    for (int64_t i = 0; i < g->equation.count; i++)
+        answer[i] = b[i] = model->forest->radiosity[g->mesh.leaves[i]];
+    struct bicgstab_end end = {
+        .residual = 0.5 * model->criterion.tolerance * model->absorptance /
+                    lit_count(model), /* of the sum over spaces */
+        .part = LEFT, .steps = STEPS_MOST};
+    double *weights = equation_weigh(&g->equation, b);
+    struct bicgstab done = {.steps = 1};
+    for (int turn = 1; done.steps > 0; turn++) {
+        if (turn > 1)
+            find_shown(g, answer);
+        if (turn == TURNS_MOST)
+            end.steps = 0;
+        done = take_turn(g, weights, end, b, h, r, answer);
+        if (balance_find_more(&g->balance, answer) && turn < TURNS_MOST)
+            done.steps = 1; /* with the balance */
+    }
+    alloc_free(weights);
+    return done.residual;
+}
+
+/* --- the answer --- */
+
+/* Updates the vote for the gathered light. */
+static void judge(const struct gathering *g, const struct rgb *h, const struct rgb *b,
+                  double residual, struct vote *vote)
+{
+    const struct model *model = &g->solver->model;
+    equation_powers(&g->equation, h, b, &vote->absorbed, &vote->escaped);
+    vote->remaining =
+        2.0 * residual * lit_count(model) / model->absorptance; /* most, in each space */
+    vote->converged =
+        vote->converged && vote->remaining <= model->criterion.tolerance;
+}
+
+/* Collective. What the light of open spaces may be off by, of irradiances `h` for
+ * radiosities `b`. */
+static void find_unsure(struct gathering *g, const struct rgb *h, const struct rgb *b,
+                        struct rgb *reflected, struct rgb *again)
+{
+    for (int64_t i = 0; i < g->equation.count; i++)
+        reflected[i] = rgb_sub(b[i], equation_material(&g->equation, i)->emission);
+    irradiances(g, reflected, false, again);
+    balance_find_unsure(&g->balance, h, reflected, again);
+}
+
+/* Collective. Claims the errors of leaves with the radiosities `b`. `change`: buffer. */
+static void claim(struct gathering *g, const struct rgb *b, double remaining,
+                  struct rgb *change)
+{
+    struct answer *answer = g->solver->beyond->answer;
+    const struct forest *forest = g->solver->model.forest;
+    const size_t count = (size_t)g->equation.count, bytes = sizeof *b;
+    struct rgb *mesh = alloc_array(4 * count, bytes), *rays = mesh + count;
+    struct rgb *halves = rays + count, *segments = halves + count;
+    for (size_t i = 0; i < count; i++)
+        g->equation.radiosity[equation_place(&g->equation, (int64_t)i)] = b[i];
+    final_gather_pull(g->gather, g->equation.radiosity);
+    claim_by_mesh(&g->equation, own_values(g));
+    share_values(g, mesh);
+    claim_find_changes(&g->equation, own_values(g));
+    share_values(g, change);
+    share_field(g, offsetof(struct gather_row, chance), bytes, rays);
+    share_field(g, offsetof(struct gather_row, halves), bytes, halves);
+    share_field(g, offsetof(struct gather_row, of_segments), bytes, segments);
+    claim_by_rays(&g->equation, halves, change, segments, rays);
+    alloc_free(answer->error);
+    answer->error = alloc_array((size_t)forest->count, sizeof *answer->error);
+    claim_errors(&g->balance, remaining, mesh, rays, answer->error, &answer->counts);
+    alloc_free(mesh);
+}
+
+/* Collective. The answer for pictures: light straight from lamps, and open shares. */
+static void share_answer(struct gathering *g, struct rgb *light)
+{
+    struct answer *answer = g->solver->beyond->answer;
+    size_t patches = (size_t)g->solver->model.forest->count;
+    share_field(g, offsetof(struct gather_row, lamps), sizeof *light, light);
+    alloc_free(answer->straight);
+    alloc_free(answer->outside);
+    answer->straight = alloc_array(patches, sizeof *answer->straight);
+    answer->outside = alloc_array(patches, sizeof *answer->outside);
+    for (int64_t i = 0; i < g->equation.count; i++) {
+        struct rgb rho = equation_material(&g->equation, i)->reflectance;
+        for (int c = 0; c < BANDS; c++)
+            answer->straight[g->mesh.leaves[i]].band[c] = rho.band[c] * light[i].band[c];
+        answer->outside[g->mesh.leaves[i]] = g->equation.covers[i].open;
+    }
+}
+
+/* Collective. Solves for light by the rows. */
+static void solve_rows(struct gathering *g, struct vote *vote)
+{
+    struct forest *forest = g->solver->model.forest;
+    size_t count = (size_t)g->equation.count;
+    struct rgb *b = alloc_array(4 * count, sizeof *b);
+    struct rgb *h = b + count, *r = h + count, *answer = r + count;
+    share_met(g);
+    double residual = solve(g, b, h, r, answer);
+    g->solver->beyond->answer->counts.closing = balance_missing(&g->balance);
+    judge(g, h, answer, residual, vote);
+    find_unsure(g, h, answer, b, r);
+    claim(g, answer, vote->remaining, r);
+    share_answer(g, h);
+    for (size_t i = 0; i < count; i++)
+        forest->radiosity[g->mesh.leaves[i]] = answer[i];
+    forest_average(forest);
+    g->gather->cut = NULL;
+    final_gather_renew(g->gather); /* as a stored solution has them */
+    alloc_free(b);
+}
+
+/* Hands the gather over to the solver. */
+static void end(struct gathering *g)
+{
+    struct answer *answer = g->solver->beyond->answer;
+    if (g->gather)
+        final_gather_drop_rows(g->gather);
+    final_gather_destroy(answer->gather); /* of a round before */
+    answer->gather = g->gather;
+    equation_free(&g->equation);
+    balance_free(&g->balance);
+    gather_mesh_free(&g->mesh);
+    stages_free(&g->stages);
+    alloc_free(g->all);
+}
+
+enum finish solver_finish(struct solver *solver, struct vote *vote)
+{
+    struct gathering g = {.solver = solver};
+    account_begin(&solver->account, PHASE_FINAL_GATHER);
+    account_begin(&solver->account, PHASE_ROWS);
+    bool done = solver_make_mesh(solver, vote->links, &g.mesh) && make_rows(&g);
+    account_end(&solver->account, PHASE_ROWS);
+    if (done)
+        solve_rows(&g, vote);
+    account_work(&solver->account, WORK_FINAL_GATHER, 0, g.bytes);
+    end(&g);
+    account_end(&solver->account, PHASE_FINAL_GATHER);
+    return done ? FINISH_DONE : FINISH_STOPPED;
+}

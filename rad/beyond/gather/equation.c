@@ -1,0 +1,247 @@
+/* What rows see, and what the equation makes of it.
+ *
+ * The links have brought a solution right in the large. Here each leaf gets a row of form
+ * factors by rays (rad/beyond/gather/rays.c), and
+ *
+ *     B = E + rho (source + W B)
+ *
+ * is solved for the leaves' B, from the links' solution on. The answer satisfies the
+ * gathered equation, whatever the errors of the links were. Rows are kept, so all this
+ * costs one tracing, and products with a sparse matrix.
+ *
+ * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side.
+ * In the residual of the equation a leaf counts by its area and, for one half, relative
+ * to its light: else things below a wide sky would be left as the links have them. Rows
+ * are dealt to the ranks. All ranks know all vectors, so only W B takes an exchange, and
+ * scalar products are the same on all ranks.
+ *
+ * Where rays meet a leaf too near, such as the floor under a box, their paths find the
+ * light there (rays.c). There the leaf is darker than in the mean, so its rest, seen by
+ * others, is brighter. With the part n of the leaf's light for near receivers and the
+ * mean radiosity L met by these, far ones are shown B + n (B - L), and less where
+ * n > 1/2: min(1, 2 (1 - n)) of the difference. (n / (1 - n) would be the whole, and
+ * noise where hardly any far ray meets the leaf.) As a part of W this would make rows of
+ * both signs, and light in bright rooms would grow with each reflection; a factor of B
+ * makes none. The factors are those of the answer before, so light is solved for in
+ * turns, until one changes nothing. In the first turn they are 1: by the links' light,
+ * which may lack much in a gap, some would be high enough to make a bright room reflect
+ * more than it receives.
+ *
+ * Where a box stands on part of a leaf, rays from there meet its inside: that part is
+ * dark, so the part seen by others is brighter than the mean, by the inverse of its
+ * share.
+ *
+ * Rejected: the defect solved for over the links, and added. Where links reflect less
+ * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
+#include "rad/beyond/gather/equation.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+/* A leaf is seen brighter than its mean by at most the inverse of this. */
+static const double LEAST_OUTSIDE = 0x1p-6;
+
+/* Leaves with less than this part of the mean radiosity are solved for as if this
+ * bright. */
+static const double DARK = 1e-3;
+
+struct equation equation_start(struct final_gather *gather,
+                               const struct gather_mesh *mesh)
+{
+    const struct forest *forest = gather->model->forest;
+    size_t count = (size_t)mesh->count;
+    struct equation e = {.gather = gather, .mesh = mesh, .count = mesh->count};
+    e.areas = alloc_array(count, sizeof *e.areas);
+    e.covers = alloc_array(count, sizeof *e.covers);
+    e.near = alloc_array(count, sizeof *e.near);
+    e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
+    e.radiosity = alloc_array((size_t)forest->count, sizeof *e.radiosity);
+    for (int64_t i = 0; i < mesh->count; i++)
+        e.areas[i] = forest_area(forest, mesh->leaves[i]);
+    return e;
+}
+
+void equation_free(struct equation *e)
+{
+    alloc_free(e->areas);
+    alloc_free(e->covers);
+    alloc_free(e->near);
+    alloc_free(e->fired);
+    alloc_free(e->radiosity);
+}
+
+/* --- rows --- */
+
+void equation_make_row(void *equation, int64_t leaf)
+{
+    struct equation *e = equation;
+    const struct gather_mesh *mesh = e->mesh;
+    const struct gather_counts *counts = &e->gather->counts;
+    int64_t *fired = e->fired + 2 * equation_space(e, leaf);
+    fired[0] += 1 - counts->rays;
+    fired[1] -= counts->escaped;
+    final_gather_add_row(e->gather, mesh->leaves[leaf], mesh->rays[leaf],
+                         mesh->segments[leaf], mesh->exact[leaf]);
+    fired[0] += counts->rays;
+    fired[1] += counts->escaped;
+}
+
+void equation_number_near(struct equation *e)
+{
+    struct final_gather *gather = e->gather;
+    struct gather_near *items = gather->near->items;
+    int32_t *number = alloc_array((size_t)gather->model->forest->count, sizeof *number);
+    for (int64_t i = 0; i < e->count; i++) {
+        int32_t place = equation_place(e, i);
+        if (items[place].area == 0)
+            continue;
+        number[place] = (int32_t)e->near_count;
+        items[e->near_count] = items[place];
+        e->near[e->near_count++] = (struct too_near){i, {{1.0, 1.0, 1.0}}};
+    }
+    for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
+        if (gather->terms[k].near >= 0)
+            gather->terms[k].near = number[gather->terms[k].near];
+    alloc_free(number);
+}
+
+void equation_find_seen(struct equation *e)
+{
+    const struct forest *forest = e->gather->model->forest;
+    const int32_t *place = e->gather->place;
+    double *seen = e->gather->near->seen;
+    for (int64_t i = 0; i < e->count; i++)
+        seen[equation_place(e, i)] = (double)e->covers[i].outside;
+    for (int64_t i = forest->count - 1; i >= 0; i--) {
+        const struct patch *patch = &forest->patches[e->gather->order[i]];
+        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++)
+            seen[i] += 0.25 * seen[place[patch->children + k]];
+    }
+}
+
+double equation_shining_area(const struct equation *e, int64_t leaf)
+{
+    const struct forest *forest = e->gather->model->forest;
+    uint32_t root = forest->patches[e->mesh->leaves[leaf]].id.root;
+    const struct cover *cover = &e->covers[leaf];
+    bool lamp = root_is_sender(e->gather->aims->lamps, (int32_t)root);
+    return (lamp ? e->areas[leaf] : equation_bare_area(e, leaf)) *
+           (double)cover->outside * (double)cover->kept;
+}
+
+/* --- what rows see --- */
+
+void equation_show(struct equation *e, const struct rgb *b, bool lamps)
+{
+    for (int64_t i = 0; i < e->count; i++) {
+        struct rgb *seen = &e->radiosity[equation_place(e, i)];
+        double share = fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
+        struct rgb emission = equation_material(e, i)->emission;
+        *seen = b[i];
+        for (int c = 0; c < BANDS && share < 1.0; c++) {
+            double own = lamps ? emission.band[c] : 0.0;
+            seen->band[c] = own + (b[i].band[c] - own) / share;
+        }
+    }
+    for (int64_t k = 0; k < e->near_count; k++)
+        for (int c = 0; c < BANDS; c++)
+            e->radiosity[equation_place(e, e->near[k].leaf)].band[c] *=
+                e->near[k].shown.band[c];
+    final_gather_pull(e->gather, e->radiosity);
+}
+
+void equation_show_means(struct equation *e, const struct rgb *b)
+{
+    for (int64_t k = 0; k < e->near_count; k++)
+        e->near[k].shown = (struct rgb){{1.0, 1.0, 1.0}};
+    equation_show(e, b, true);
+}
+
+void equation_add_near(const struct equation *e, int64_t *watts)
+{
+    for (int64_t row = 0; row < e->gather->count; row++)
+        final_gather_add_near(e->gather, row, e->radiosity, watts);
+}
+
+void equation_set_shown(struct equation *e, const int64_t *watts)
+{
+    const struct gather_nears *nears = e->gather->near;
+    for (int64_t k = 0; k < e->near_count; k++) {
+        int64_t i = e->near[k].leaf;
+        const struct gather_near *near = &nears->items[k];
+        const struct rgb *own = &e->radiosity[equation_place(e, i)];
+        double area = e->areas[i] * fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
+        double part = (double)near->area * nears->unit_area / area;
+        double unit = nears->unit_watts / (area * fmax(1.0, part));
+        double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
+        for (int c = 0; c < BANDS; c++) {
+            double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
+            met = fmax(0.0, met); /* slopes may bring it below */
+            double excess = own->band[c] > 0.0 ? n - met / own->band[c] : 0.0;
+            e->near[k].shown.band[c] = fmax(0.0, 1.0 + damping * excess);
+        }
+    }
+}
+
+/* --- light --- */
+
+void equation_multiply(const struct equation *e, bool lamps, struct rgb *h)
+{
+    for (int64_t row = 0; row < e->gather->count; row++)
+        h[row] = final_gather_irradiance(e->gather, row, e->radiosity, lamps);
+}
+
+void equation_reflect(const struct equation *e, const struct rgb *h, struct rgb *b)
+{
+    for (int64_t i = 0; i < e->count; i++) {
+        const struct material *m = equation_material(e, i);
+        for (int c = 0; c < BANDS; c++)
+            b[i].band[c] = m->emission.band[c] + m->reflectance.band[c] * h[i].band[c];
+    }
+}
+
+double *equation_weigh(const struct equation *e, const struct rgb *b)
+{
+    size_t spaces = (size_t)lit_count(e->gather->model);
+    double *weights = alloc_array((size_t)e->count, sizeof *weights);
+    double *all = alloc_array(spaces, sizeof *all);
+    int64_t *count = alloc_array(spaces, sizeof *count);
+    for (int64_t i = 0; i < e->count; i++) {
+        all[equation_space(e, i)] += e->areas[i] * rgb_sum(b[i]);
+        count[equation_space(e, i)]++;
+    }
+    for (int64_t i = 0; i < e->count; i++) {
+        int32_t s = equation_space(e, i);
+        double least = DARK * e->gather->lit[s].mean;
+        if (all[s] > 0.0)
+            weights[i] = e->areas[i] / all[s] +
+                         1.0 / ((double)count[s] * fmax(rgb_sum(b[i]), least));
+    }
+    alloc_free(all);
+    alloc_free(count);
+    return weights;
+}
+
+void equation_powers(const struct equation *e, const struct rgb *h,
+                         const struct rgb *b, double *absorbed, double *escaped)
+{
+    const struct model *model = e->gather->model;
+    double leaving = 0.0, arriving = 0.0;
+    *absorbed = 0.0;
+    for (int64_t i = 0; i < e->count; i++) {
+        const struct material *m = equation_material(e, i);
+        uint32_t root = model->forest->patches[e->mesh->leaves[i]].id.root;
+        double bare = equation_bare_area(e, i);
+        if (scene_is_sky(model->scene, (int32_t)root))
+            continue;
+        for (int c = 0; c < BANDS; c++) {
+            double rho = m->reflectance.band[c];
+            *absorbed += bare * (1.0 - rho) * h[i].band[c];
+            arriving += bare * h[i].band[c];
+            leaving += bare * (b[i].band[c] - m->emission.band[c]) +
+                       e->areas[i] * m->emission.band[c]; /* what is covered, is lost */
+        }
+    }
+    *escaped = leaving - arriving;
+}
