@@ -105,7 +105,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall \
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
         patch_exchange factors link patch_link method cluster node oracle error_oracle \
-        pushpull \
+        pushpull equation \
         final_gather lamps checksum paths meter plan balance assign gather_mesh \
         spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
