@@ -31,34 +31,6 @@ static const double UNEVEN = 1.05;
 
 /* --- homes of roots --- */
 
-/* A heap of ranks, the smallest load on top. */
-struct heap {
-    int *ranks; /* [count] */
-    int count;
-    int64_t *loads; /* [count] of each rank */
-};
-
-static bool goes_before(const struct heap *heap, int a, int b)
-{
-    int64_t x = heap->loads[a], y = heap->loads[b];
-    return x != y ? x < y : a < b;
-}
-
-static void sink(struct heap *heap, int at)
-{
-    for (int child = 2 * at + 1; child < heap->count; child = 2 * at + 1) {
-        if (child + 1 < heap->count &&
-            goes_before(heap, heap->ranks[child + 1], heap->ranks[child]))
-            child++;
-        int rank = heap->ranks[at], below = heap->ranks[child];
-        if (!goes_before(heap, below, rank))
-            return;
-        heap->ranks[at] = below;
-        heap->ranks[child] = rank;
-        at = child;
-    }
-}
-
 struct weighted {
     int64_t weight;
     int32_t number;
@@ -78,18 +50,15 @@ void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
     for (int32_t i = 0; i < count; i++)
         items[i] = (struct weighted){weights[i], i};
     qsort(items, (size_t)count, sizeof *items, compare_items);
-    struct heap heap = {.count = ranks};
-    heap.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks);
-    heap.loads = alloc_array((size_t)ranks, sizeof *heap.loads);
-    for (int r = 0; r < ranks; r++)
-        heap.ranks[r] = r; /* a heap, as all loads are 0 */
+    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int32_t i = 0; i < count; i++) {
-        owner[items[i].number] = heap.ranks[0];
-        heap.loads[heap.ranks[0]] += items[i].weight;
-        sink(&heap, 0);
+        int least = 0;
+        for (int r = 1; r < ranks; r++)
+            least = loads[r] < loads[least] ? r : least;
+        owner[items[i].number] = least;
+        loads[least] += items[i].weight;
     }
-    alloc_free(heap.loads);
-    alloc_free(heap.ranks);
+    alloc_free(loads);
     alloc_free(items);
 }
 
@@ -114,19 +83,9 @@ static int32_t smaller_of(const struct forest *forest, const struct link *link)
     return link->p < link->q ? link->p : link->q;
 }
 
-/* Where the links of each node go, clusters, last one first, and patches; to be freed:
- * home. */
-static int *choose_homes(const struct solver *solver)
-{
-    int64_t clusters = solver->memory.clusters, all = solver->model.forest->count;
-    int *to = alloc_array((size_t)(clusters + all), sizeof *to);
-    for (int64_t node = -clusters; node < all; node++)
-        to[clusters + node] = home_of(solver, (int32_t)node);
-    return to;
-}
-
-/* The same for a rank with more links than others, by the plan of LoadBalance: those of
- * clusters, and of patches made early, leave; these have many links each. */
+/* Where the links of each node go, clusters, last one first, and patches, from a rank
+ * with more links than others, by the plan of LoadBalance: those of clusters, and of
+ * patches made early, leave; these have many links each. To be freed. */
 static int *choose_leaving(const struct solver *solver, const int64_t *loads)
 {
     const struct forest *forest = solver->model.forest;
@@ -154,20 +113,19 @@ static int *choose_leaving(const struct solver *solver, const int64_t *loads)
     return to;
 }
 
-/* Collective. Sends links, from number `first` on, to where those of their nodes go.
- * Frees `to`. */
-static void send_links(struct solver *solver, int64_t first, int *to)
+/* Collective. Sends links, from number `first` on, to where those of their nodes go; home
+ * if `to` is NULL. */
+static void send_links(struct solver *solver, int64_t first, const int *to)
 {
-    const struct forest *forest = solver->model.forest;
     int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
     for (int64_t i = 0; i < solver->links.count; i++) {
-        int64_t node = smaller_of(forest, &solver->links.items[i]);
-        destination[i] =
-            i < first ? solver->comm->rank : to[solver->memory.clusters + node];
+        int32_t node = smaller_of(solver->model.forest, &solver->links.items[i]);
+        destination[i] = i < first ? solver->comm->rank
+                         : to      ? to[solver->memory.clusters + node]
+                                   : home_of(solver, node);
     }
     links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
-    alloc_free(to);
 }
 
 void solver_settle_links(struct solver *solver)
@@ -177,7 +135,7 @@ void solver_settle_links(struct solver *solver)
     if (comm->size == 1)
         return;
     account_begin(&solver->account, PHASE_MIGRATION);
-    send_links(solver, solver->turn.settled, choose_homes(solver));
+    send_links(solver, solver->turn.settled, NULL);
     link_list_sort(&solver->links);
     int64_t *loads = comm_gather_each(comm, &solver->links.seen, sizeof *loads);
     for (int r = 0; r < comm->size; r++) {
@@ -185,8 +143,11 @@ void solver_settle_links(struct solver *solver)
         most = loads[r] > most ? loads[r] : most;
     }
     if (DEALINGS[solver->model.criterion.balance] &&
-        (double)(most * comm->size) > UNEVEN * (double)all)
-        send_links(solver, 0, choose_leaving(solver, loads));
+        (double)(most * comm->size) > UNEVEN * (double)all) {
+        int *to = choose_leaving(solver, loads);
+        send_links(solver, 0, to);
+        alloc_free(to);
+    }
     solver->turn.settled = solver->links.count;
     alloc_free(loads);
     account_end(&solver->account, PHASE_MIGRATION);
