@@ -211,13 +211,6 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
-void comm_tell(const struct comm *comm, const int *numbers, int *told)
-{
-    MPI_Request request;
-    MPI_Ialltoall(numbers, 1, MPI_INT, told, 1, MPI_INT, comm->handle, &request);
-    comm_wait(&request);
-}
-
 /* One message to each rank with records to get: no count is too large for MPI, and ranks
  * with nothing for each other need not meet. The records of a rank for itself are
  * copied. */
@@ -249,16 +242,16 @@ void comm_deliver(const struct comm *comm, const void *records, const int *count
 }
 
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
-                    size_t bytes, int64_t *arriving)
+                    size_t bytes, int *expected, int64_t *arriving)
 {
-    int *expected = alloc_array((size_t)comm->size, sizeof *expected);
-    comm_tell(comm, counts, expected);
+    MPI_Request request;
+    MPI_Ialltoall(counts, 1, MPI_INT, expected, 1, MPI_INT, comm->handle, &request);
+    comm_wait(&request);
     *arriving = 0;
     for (int r = 0; r < comm->size; r++)
         *arriving += expected[r];
     void *arrived = alloc_array((size_t)*arriving, bytes);
     comm_deliver(comm, records, counts, arrived, expected, bytes);
-    alloc_free(expected);
     return arrived;
 }
 
@@ -277,12 +270,11 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 {
     int size = comm_count(comm, bytes);
     int *sizes = comm_gather_each(comm, &size, sizeof size);
-    MPI_Request request;
-    at[comm->size] = comm_count(comm, comm_displacements(comm, sizes, at));
+    at[comm->size] = (int)comm_displacements(comm, sizes, at);
     uint8_t *all = alloc_array((size_t)at[comm->size], 1);
-    MPI_Iallgatherv(own, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle,
-                    &request);
-    comm_wait(&request);
+    if (size > 0)
+        memcpy(all + at[comm->rank], own, (size_t)size);
+    comm_share(comm, all, sizes, at, 1);
     alloc_free(sizes);
     return all;
 }

@@ -48,9 +48,6 @@ int comm_count(const struct comm *comm, int64_t count);
 int64_t comm_displacements(const struct comm *comm, const int *counts,
                            int *displacements);
 
-/* Collective. Each rank tells rank r numbers[r]; told[r] is what rank r tells. */
-void comm_tell(const struct comm *comm, const int *numbers, int *told);
-
 /* Collective. Records go to ranks with known counts: counts[0] for rank 0, then
  * counts[1] for rank 1, and so on; expected[r] of rank r arrive, in the order of the
  * ranks. Records have `bytes` bytes, without padding. */
@@ -59,9 +56,10 @@ void comm_deliver(const struct comm *comm, const void *records, const int *count
 
 /* Collective. Total exchange of records of `bytes` bytes without padding: `records` holds
  * counts[0] for rank 0, then counts[1] for rank 1, and so on. Returns what arrives, in
- * the order of the ranks, and its number; to be freed with alloc_free(). */
+ * the order of the ranks, to be freed with alloc_free(); expected[r] records of rank r,
+ * `*arriving` in all. */
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
-                    size_t bytes, int64_t *arriving);
+                    size_t bytes, int *expected, int64_t *arriving);
 
 /* Collective. All ranks get the records of all: counts[r] of rank r begin at[r] records
  * behind `records`; each rank's own are in place. */

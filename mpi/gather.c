@@ -37,39 +37,26 @@ void solver_transfer(struct solver *solver, const struct rgb *vector)
 
 /* --- step 5 --- */
 
-/* The flux of a proxy on its way home; no padding. */
-struct wire_flux {
-    int64_t band[BANDS];
-};
-
 static int64_t *flux_of(const struct solver *solver, int32_t node)
 {
     return node_is_cluster(node) ? solver->above.flux + BANDS * (int64_t)~node
                                  : solver->model.forest->patches[node].flux;
 }
 
-/* Collective. Own nodes get the flux of all their proxies. */
-static void bring_home(struct solver *solver)
+static void pack_flux(struct solver *solver, int32_t proxy, void *record)
 {
-    const struct route *from = &solver->routes.proxies, *to = &solver->routes.originals;
-    struct account *account = &solver->account;
-    int64_t messages = comm_counts().messages;
-    account_begin(account, PHASE_GATHER);
-    struct wire_flux *out = alloc_array((size_t)from->count, sizeof *out);
-    struct wire_flux *in = alloc_array((size_t)to->count, sizeof *in);
-    for (int64_t i = 0; i < from->count; i++)
-        memcpy(out[i].band, flux_of(solver, from->nodes[i]), sizeof out->band);
-    comm_deliver(solver->comm, out, from->counts, in, to->counts, sizeof *out);
-    for (int64_t i = 0; i < to->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            flux_of(solver, to->nodes[i])[c] += in[i].band[c];
-    account->bytes[CARGO_FLUX] += from->count * (int64_t)sizeof *out;
-    account->copied += from->count + to->count;
-    account->messages[CARGO_FLUX] += comm_counts().messages - messages;
-    alloc_free(in);
-    alloc_free(out);
-    account_end(account, PHASE_GATHER);
+    memcpy(record, flux_of(solver, proxy), BANDS * sizeof(int64_t));
 }
+
+static void add_flux(struct solver *solver, int32_t original, void *record)
+{
+    for (int c = 0; c < BANDS; c++)
+        flux_of(solver, original)[c] += ((const int64_t *)record)[c];
+}
+
+/* Flux, from proxies to originals. */
+static const struct record_kind FLUX = {CARGO_FLUX, BANDS * sizeof(int64_t), pack_flux,
+                                        add_flux};
 
 void solver_carry(struct solver *solver, const struct rgb *vector)
 {
@@ -82,7 +69,9 @@ void solver_carry(struct solver *solver, const struct rgb *vector)
     for (int64_t i = 0; i < proxies->count; i++)
         memset(flux_of(solver, proxies->nodes[i]), 0, sizeof patches->flux);
     solver->steps.transfer(solver, vector);
-    bring_home(solver);
+    account_begin(&solver->account, PHASE_GATHER);
+    routes_carry(solver, proxies, &solver->routes.originals, FLUX);
+    account_end(&solver->account, PHASE_GATHER);
     if (solver->steps.collect)
         solver->steps.collect(solver);
 }

@@ -65,16 +65,16 @@ struct traffic links_migrate(struct solver *solver, struct link_list *list,
 {
     const struct comm *comm = solver->comm;
     size_t ranks = (size_t)comm->size;
-    int *counts = alloc_array(ranks, sizeof *counts),
-        *at = alloc_array(ranks, sizeof *at);
+    int *counts = alloc_array(ranks, sizeof *counts);
+    int *at = alloc_array(ranks, sizeof *at);
     comm_count(comm, list->count);
     for (int64_t i = 0; i < list->count; i++)
         counts[destination[i]] += destination[i] != comm->rank;
     struct traffic traffic = {.sent = comm_displacements(comm, counts, at)};
     int64_t messages = comm_counts().messages;
     struct wire_link *out = pack_leaving(solver, list, destination, at, traffic.sent);
-    struct wire_link *in =
-        comm_exchange(comm, out, counts, sizeof *out, &traffic.received);
+    struct wire_link *in = /* `at` is used up */
+        comm_exchange(comm, out, counts, sizeof *out, at, &traffic.received);
     for (int64_t i = 0; i < traffic.received; i++)
         link_list_append(list, unpack(&solver->model, &in[i]));
     solver->account.messages[CARGO_LINKS] += comm_counts().messages - messages;

@@ -83,18 +83,15 @@ struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
 static struct route route_to_proxies(struct solver *solver, const struct route *asked)
 {
     const struct model *model = &solver->model;
-    size_t ranks = (size_t)solver->comm->size;
     int64_t messages = comm_counts().messages;
-    struct route route = {.counts = alloc_array(ranks, sizeof *route.counts)};
-    comm_tell(solver->comm, asked->counts, route.counts);
-    for (size_t r = 0; r < ranks; r++)
-        route.count += route.counts[r];
-    route.nodes = alloc_array((size_t)route.count, sizeof *route.nodes);
-    struct patch_id *ids = alloc_array((size_t)asked->count, sizeof *ids);
-    struct patch_id *own = alloc_array((size_t)route.count, sizeof *own);
+    struct route route = {0};
+    struct patch_id *ids = alloc_array((size_t)asked->count, sizeof *ids), *own;
     for (int64_t i = 0; i < asked->count; i++)
         ids[i] = model->method.node_id(model, asked->nodes[i]);
-    comm_deliver(solver->comm, ids, asked->counts, own, route.counts, sizeof *ids);
+    route.counts = alloc_array((size_t)solver->comm->size, sizeof *route.counts);
+    own = comm_exchange(solver->comm, ids, asked->counts, sizeof *ids, route.counts,
+                        &route.count);
+    route.nodes = alloc_array((size_t)route.count, sizeof *route.nodes);
     for (int64_t i = 0; i < route.count; i++)
         route.nodes[i] = model->method.node_reach(model, own[i]);
     solver->account.bytes[CARGO_LIGHT] += route.count * (int64_t)sizeof *own;
@@ -104,26 +101,38 @@ static struct route route_to_proxies(struct solver *solver, const struct route *
     return route;
 }
 
-/* Collective. Radiosities go from originals to proxies. */
-static void send_values(struct solver *solver, const struct route *originals,
-                        const struct route *proxies)
+void routes_carry(struct solver *solver, const struct route *from, const struct route *to,
+                  struct record_kind kind)
 {
+    struct account *account = &solver->account;
     int64_t messages = comm_counts().messages;
-    int64_t sent = originals->count, got = proxies->count;
-    struct rgb *out = alloc_array((size_t)sent, sizeof *out);
-    struct rgb *in = alloc_array((size_t)got, sizeof *in);
-    for (int64_t i = 0; i < sent; i++)
-        out[i] = *radiosity_of(solver, originals->nodes[i]);
-    comm_deliver(solver->comm, out, originals->counts, in, proxies->counts, sizeof *out);
-    for (int64_t i = 0; i < got; i++)
-        *radiosity_of(solver, proxies->nodes[i]) = in[i];
-    solver->account.bytes[CARGO_LIGHT] += sent * (int64_t)sizeof *out;
-    solver->account.messages[CARGO_LIGHT] += comm_counts().messages - messages;
-    solver->account.copied += sent + got;
+    char *out = alloc_array((size_t)from->count, kind.bytes);
+    char *in = alloc_array((size_t)to->count, kind.bytes);
+    for (int64_t i = 0; i < from->count; i++)
+        kind.pack(solver, from->nodes[i], out + (size_t)i * kind.bytes);
+    comm_deliver(solver->comm, out, from->counts, in, to->counts, kind.bytes);
+    for (int64_t i = 0; i < to->count; i++)
+        kind.unpack(solver, to->nodes[i], in + (size_t)i * kind.bytes);
+    account->bytes[kind.cargo] += from->count * (int64_t)kind.bytes;
+    account->messages[kind.cargo] += comm_counts().messages - messages;
+    account->copied += from->count + to->count;
     alloc_free(in);
     alloc_free(out);
 }
 
+static void pack_light(struct solver *solver, int32_t node, void *record)
+{
+    memcpy(record, radiosity_of(solver, node), sizeof(struct rgb));
+}
+
+static void unpack_light(struct solver *solver, int32_t node, void *record)
+{
+    memcpy(radiosity_of(solver, node), record, sizeof(struct rgb));
+}
+
+/* Radiosities, from originals to proxies. */
+static const struct record_kind LIGHT = {CARGO_LIGHT, sizeof(struct rgb), pack_light,
+                                         unpack_light};
 
 /* --- proxies --- */
 
@@ -167,7 +176,7 @@ void routes_renew(struct solver *solver)
     }
     struct route asked = route_to_homes(solver, wanted, count);
     struct route own = route_to_proxies(solver, &asked);
-    send_values(solver, &own, &asked);
+    routes_carry(solver, &own, &asked, LIGHT);
     route_extend(&solver->routes.proxies, &asked, solver->comm->size);
     route_extend(&solver->routes.originals, &own, solver->comm->size);
     solver->account.held = solver->routes.proxies.count;
@@ -216,7 +225,7 @@ void solver_learn(struct solver *solver, const struct link_list *list, bool deep
     }
     struct route asked = route_to_homes(solver, wanted, unknown);
     struct route own = route_to_proxies(solver, &asked);
-    send_values(solver, &own, &asked);
+    routes_carry(solver, &own, &asked, LIGHT);
     if (solver->steps.learn)
         solver->steps.learn(solver, &own, &asked);
     for (int64_t i = 0; i < count; i++)
@@ -234,16 +243,16 @@ void route_share(struct solver *solver, const struct route *route, enum cargo ca
 {
     const struct comm *comm = solver->comm;
     int64_t messages = comm_counts().messages;
-    int own = route->counts[comm->rank];
     int *at = alloc_array((size_t)comm->size, sizeof *at);
     struct rgb *values = alloc_array((size_t)route->count, sizeof *values);
     comm_displacements(comm, route->counts, at);
-    for (int i = at[comm->rank]; i < at[comm->rank] + own; i++)
+    for (int64_t i = 0; i < route->count; i++)
         values[i] = *radiosity_of(solver, route->nodes[i]);
     comm_share(comm, values, route->counts, at, sizeof *values);
     for (int64_t i = 0; i < route->count; i++)
         *radiosity_of(solver, route->nodes[i]) = values[i];
-    solver->account.bytes[cargo] += (route->count - own) * (int64_t)sizeof *values;
+    solver->account.bytes[cargo] +=
+        (route->count - route->counts[comm->rank]) * (int64_t)sizeof *values;
     solver->account.messages[cargo] += comm_counts().messages - messages;
     alloc_free(values);
     alloc_free(at);
@@ -276,7 +285,7 @@ void solver_complete(struct solver *solver)
 void solver_renew_proxies(struct solver *solver)
 {
     account_begin(&solver->account, PHASE_SCATTER);
-    send_values(solver, &solver->routes.originals, &solver->routes.proxies);
+    routes_carry(solver, &solver->routes.originals, &solver->routes.proxies, LIGHT);
     account_end(&solver->account, PHASE_SCATTER);
 }
 

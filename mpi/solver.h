@@ -63,6 +63,16 @@ struct routes {
     int64_t capacity;
 };
 
+struct solver;
+
+/* What travels of each node of a route: `bytes` bytes, without padding. */
+struct record_kind {
+    enum cargo cargo;
+    size_t bytes;
+    void (*pack)(struct solver *solver, int32_t node, void *record);
+    void (*unpack)(struct solver *solver, int32_t node, void *record);
+};
+
 /* Where the run is. */
 struct turn {
     int64_t pass;       /* refinements so far */
@@ -77,7 +87,6 @@ struct turn {
 };
 
 struct beyond; /* mpi/beyond/beyond.h */
-struct solver;
 struct vote;
 
 /* After step 9: the light is there; a signal has come; or links want another pass. */
@@ -175,6 +184,10 @@ void solver_learn(struct solver *solver, const struct link_list *list, bool deep
 struct route route_to_homes(const struct solver *solver, const int32_t *nodes,
                             int64_t count);
 void route_free(struct route *route);
+
+/* Collective. Records go from the nodes of a rank to the same of others. */
+void routes_carry(struct solver *solver, const struct route *from, const struct route *to,
+                  struct record_kind kind);
 
 /* Collective. All ranks get the radiosities of nodes from their homes. Pre: the route is
  * the same on all ranks. */

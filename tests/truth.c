@@ -292,9 +292,10 @@ static void gather_elements(const struct comm *comm, struct truth *truth)
     struct element *mine = alloc_array((size_t)most, sizeof *mine);
     for (int64_t i = comm->rank; i < truth->count; i += comm->size)
         mine[own++] = truth->items[i];
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    int *counts = alloc_array(2 * (size_t)comm->size, sizeof *counts);
     counts[0] = comm_count(comm, own);
-    struct element *all = comm_exchange(comm, mine, counts, sizeof *mine, &arriving);
+    struct element *all = comm_exchange(comm, mine, counts, sizeof *mine,
+                                        counts + comm->size, &arriving);
     for (int rank = 0; rank < comm->size && at < arriving; rank++)
         for (int64_t i = rank; i < truth->count; i += comm->size)
             truth->items[i] = all[at++];

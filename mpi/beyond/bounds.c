@@ -7,29 +7,29 @@
  * children of these before each level. */
 #include "mpi/beyond/bounds.h"
 
-#include "geom/alloc.h"
+#include <string.h>
+
 #include "mpi/beyond/beyond.h"
 #include "rad/beyond/range.h"
+
+static void pack_range(struct solver *solver, int32_t node, void *record)
+{
+    if (!node_is_cluster(node))
+        memcpy(record, &solver->model.forest->ranges[node], sizeof(float));
+}
+
+static void unpack_range(struct solver *solver, int32_t node, void *record)
+{
+    if (!node_is_cluster(node))
+        memcpy(&solver->model.forest->ranges[node], record, sizeof(float));
+}
 
 void bounds_learn(struct solver *solver, const struct route *originals,
                   const struct route *proxies)
 {
-    struct account *account = &solver->account;
-    float *ranges = solver->model.forest->ranges;
-    int64_t messages = comm_counts().messages;
-    float *out = alloc_array((size_t)originals->count, sizeof *out);
-    float *in = alloc_array((size_t)proxies->count, sizeof *in);
-    for (int64_t i = 0; i < originals->count; i++)
-        if (!node_is_cluster(originals->nodes[i]))
-            out[i] = ranges[originals->nodes[i]];
-    comm_deliver(solver->comm, out, originals->counts, in, proxies->counts, sizeof *out);
-    for (int64_t i = 0; i < proxies->count; i++)
-        if (!node_is_cluster(proxies->nodes[i]))
-            ranges[proxies->nodes[i]] = in[i];
-    account->bytes[CARGO_LIGHT] += originals->count * (int64_t)sizeof *out;
-    account->messages[CARGO_LIGHT] += comm_counts().messages - messages;
-    alloc_free(in);
-    alloc_free(out);
+    static const struct record_kind RANGES = {CARGO_LIGHT, sizeof(float), pack_range,
+                                              unpack_range};
+    routes_carry(solver, originals, proxies, RANGES);
 }
 
 void bounds_prepare(struct solver *solver)
