@@ -75,6 +75,7 @@ void scene_destroy(struct scene *scene)
     if (scene && !scene->is_view) {
         alloc_free(scene->triangles);
         alloc_free(scene->planes);
+        alloc_free(scene->opaque);
         alloc_free(scene->areas);
         alloc_free(scene->material_of);
         alloc_free(scene->groups.goes_on);
@@ -92,6 +93,8 @@ static void pack_arrays(struct scene *scene, struct pack *pack)
     int64_t count = scene->input_count;
     PACK(pack, scene->triangles, count);
     PACK(pack, scene->planes, count);
+    if (scene->opaque)
+        PACK(pack, scene->opaque, count);
     PACK(pack, scene->areas, count);
     PACK(pack, scene->material_of, count);
     PACK(pack, scene->opposed, count);
@@ -299,6 +302,22 @@ static void handle_doubles(struct scene *scene, struct scene_repairs *repairs)
     scene->groups.goes_on = NULL;
 }
 
+/* Panes have planes, and are in no octree of blockers. */
+static void find_panes(struct scene *scene)
+{
+    size_t count = (size_t)scene->input_count;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        if (!material_is_pane(scene_root_material(scene, i)))
+            continue;
+        if (!scene->opaque) {
+            scene->opaque = alloc_array(count, sizeof *scene->opaque);
+            memcpy(scene->opaque, scene->planes, count * sizeof *scene->opaque);
+        }
+        scene->has_panes = true;
+        scene->opaque[i] = (struct plane){{0.0, 0.0, 0.0}, 0.0};
+    }
+}
+
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
                    struct error *error)
 {
@@ -311,6 +330,7 @@ bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
     if (repairs->degenerate == scene->sky_first)
         return error_set(error, EXIT_USAGE, "all faces of the scene are degenerate");
     handle_doubles(scene, repairs);
+    find_panes(scene);
     return true;
 }
 
@@ -319,6 +339,7 @@ void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent)
     scene->place = (struct scene_place){centre, exponent};
     find_bounds(scene);
     measure_triangles(scene);
+    find_panes(scene);
 }
 
 void scene_find_backs(struct scene *scene)
@@ -333,17 +354,32 @@ void scene_drop(struct scene *scene, int32_t input)
 {
     scene->areas[input] = 0.0;
     scene->planes[input] = (struct plane){{0.0, 0.0, 0.0}, 0.0};
+    if (scene->opaque)
+        scene->opaque[input] = scene->planes[input];
+}
+
+void scene_drop_panes(struct scene *scene)
+{
+    for (int32_t i = 0; i < scene->input_count && scene->has_panes; i++)
+        if (material_is_pane(scene_root_material(scene, i)))
+            scene_drop(scene, i);
+    scene->has_panes = false;
 }
 
 int32_t scene_root_count(const struct scene *scene)
 {
-    return scene->two_sided ? 2 * scene->input_count : scene->input_count;
+    bool twins = scene->two_sided || scene->has_panes;
+    return twins ? 2 * scene->input_count : scene->input_count;
 }
 
 bool scene_has_twin(const struct scene *scene, int32_t input)
 {
-    return scene->two_sided && !scene->opposed[input] && input < scene->sky_first &&
-           (scene->two_sided_lamps || !material_emits(scene_root_material(scene, input)));
+    if ((!scene->two_sided && !scene->has_panes) || scene->opposed[input] ||
+        input >= scene->sky_first)
+        return false;
+    const struct material *material = scene_root_material(scene, input);
+    return material_is_pane(material) ||
+           (scene->two_sided && (scene->two_sided_lamps || !material_emits(material)));
 }
 
 struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner)
@@ -424,6 +460,8 @@ uint64_t scene_hash(const struct scene *scene)
         }
         hash = hash_doubles(hash, material->reflectance.band, BANDS);
         hash = hash_doubles(hash, material->emission.band, BANDS);
+        if (material_is_pane(material))
+            hash = hash_doubles(hash, material->transmittance.band, BANDS);
         if (scene->opposed[i] || !(scene->areas[i] > 0.0)) /* roots may be missing */
             hash = hash_doubles(hash, &scene->areas[i], 1);
     }

@@ -17,7 +17,14 @@
 struct material {
     struct rgb reflectance; /* rho, 1, each band in [0, 1) */
     struct rgb emission;    /* E, emitted radiosity, W/m^2, each band >= 0 */
+    struct rgb transmittance; /* of a pane, 1, each band in [0, 1]; 0: opaque */
 };
+
+/* True for a pane: such faces block nothing, and multiply the light crossing them. */
+static inline bool material_is_pane(const struct material *material)
+{
+    return rgb_sum(material->transmittance) > 0.0;
+}
 
 /* True for a surface without reflectance and emission. */
 static inline bool material_is_dark(const struct material *material)
@@ -30,7 +37,8 @@ static inline bool material_is_same(const struct material *a, const struct mater
     bool same = true;
     for (int c = 0; c < BANDS; c++)
         same = same && a->reflectance.band[c] == b->reflectance.band[c] &&
-               a->emission.band[c] == b->emission.band[c];
+               a->emission.band[c] == b->emission.band[c] &&
+               a->transmittance.band[c] == b->transmittance.band[c];
     return same;
 }
 
@@ -68,6 +76,7 @@ struct scene_place {
 struct scene {
     struct triangle *triangles; /* [input_count], scene units after scene_prepare() */
     struct plane *planes;       /* [input_count]; zero for a dropped triangle */
+    struct plane *opaque;       /* the same, zero for a pane, too; NULL: there are none */
     double *areas;              /* [input_count], square scene units; 0: dropped */
     int32_t *material_of;       /* [input_count], index into materials */
     bool *opposed;              /* [input_count], another triangle lies on this one,
@@ -84,6 +93,7 @@ struct scene {
     int32_t up;                 /* upward axis: 1, 2, 3 for x, y, z, or -; 0: unknown */
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
     bool two_sided_lamps;       /* if two_sided: lamps have twins, too */
+    bool has_panes;             /* faces are panes, which have twins, as if two_sided */
     struct scene_place place;
     struct vec3 low, high;      /* bounding box, scene units */
     bool is_view;               /* the arrays lie in memory of others */
@@ -127,6 +137,15 @@ void scene_find_backs(struct scene *scene);
 
 /* Drops a triangle from a prepared scene. */
 void scene_drop(struct scene *scene, int32_t input);
+
+/* Drops all panes. */
+void scene_drop_panes(struct scene *scene);
+
+/* The planes of blockers, for an octree. Valid as long as the scene. */
+static inline const struct plane *scene_blocking_planes(const struct scene *scene)
+{
+    return scene->opaque ? scene->opaque : scene->planes;
+}
 
 /* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
  * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. A

@@ -26,7 +26,8 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
     double start = comm_seconds();
     if (comm->rank == 0 && octree)
         built =
-            octree_create((*scene)->triangles, (*scene)->planes, (*scene)->input_count);
+            octree_create((*scene)->triangles, scene_blocking_planes(*scene),
+                          (*scene)->input_count);
     double seconds = comm_seconds() - start;
     if (comm->size == 1) {
         if (octree)

@@ -83,7 +83,8 @@ unread="material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and 
 expected="$notes 1 material file(s) missing or not readable (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)
 $notes 1 newmtl without a name: taken as the material of usemtl without one
-$notes 1 transparent material(s) (d or Tr), taken as opaque
+$notes 1 material(s) with d, Tr, Tf or illum 4 are panes, which links, view factors and \
+--paper do not see
 $notes 1 $texture
 $notes 2 keyword(s) of materials passed over: Ks norm
 $notes 1 $unread

@@ -204,8 +204,8 @@ static inline void soup_add_sphere(struct soup *soup, double radius, int level)
 
 static inline struct material material_grey(double reflectance, double emission)
 {
-    return (struct material){{{reflectance, reflectance, reflectance}},
-                             {{emission, emission, emission}}};
+    return (struct material){.reflectance = {{reflectance, reflectance, reflectance}},
+                             .emission = {{emission, emission, emission}}};
 }
 
 /* Gives all triangles that have none yet this material. */
@@ -251,7 +251,8 @@ static inline struct scene *prepared(struct scene *scene)
 
 static inline struct octree *octree_of(const struct scene *scene)
 {
-    return octree_create(scene->triangles, scene->planes, scene->input_count);
+    return octree_create(scene->triangles, scene_blocking_planes(scene),
+                         scene->input_count);
 }
 
 struct world {

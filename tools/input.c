@@ -45,7 +45,12 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
          "material(s) without a definition, taken as grey (first: %s)", materials);
     warn(run, read->nameless,
          "newmtl without a name: taken as the material of usemtl without one", "");
-    warn(run, read->transparent, "transparent material(s) (d or Tr), taken as opaque",
+    warn(run, read->all_panes ? read->panes : 0,
+         "material(s) with d, Tr, Tf or illum 4 on all faces, taken as opaque", "");
+    warn(run, read->all_panes ? 0 : read->panes,
+         "material(s) with d, Tr, Tf or illum 4 are panes, which links, view factors and "
+         "--paper do not see", "");
+    warn(run, read->all_panes ? 0 : read->glowing, "pane(s) with Ke, which emit nothing",
          "");
     if (read->textures.count > 0)
         snprintf(lost, sizeof lost,
@@ -260,6 +265,8 @@ static bool read_scene(struct run *run)
     struct error wrong = {0};
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
+    if (run->options.unlit || run->options.criterion.final_gather == 0)
+        scene_drop_panes(run->scene);
     warn_repairs(run, &read, &prepared);
     return run->options.unlit || check_emission(run, error);
 }

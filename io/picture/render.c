@@ -137,7 +137,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     const struct shading *shading = renderer->shading;
     struct final_gather *gather = renderer->gather;
     const struct scene *scene = gather->model->scene;
-    static const struct material WHITE = {{{1.0, 1.0, 1.0}}, {{0.0, 0.0, 0.0}}};
+    static const struct material WHITE = {.reflectance = {{1.0, 1.0, 1.0}}};
     const struct material *m =
         renderer->irradiance ? &WHITE : scene_root_material(scene, view->roots[0]);
     if (renderer->irradiance && scene_is_sky(scene, view->roots[0]))

@@ -130,10 +130,14 @@ static bool read_materials(struct solution_reader *reader,
         if (!ply_file_record(reader->file, element, i, reader->error))
             return false;
         struct material m = {take_colour(reader->file, PLY_REFLECTANCE_R),
-                             take_colour(reader->file, PLY_EMISSION_R)};
+                             take_colour(reader->file, PLY_EMISSION_R),
+                             {{0.0, 0.0, 0.0}}};
+        if (has_all(element, PLY_TRANSMITTANCE_R, PLY_TRANSMITTANCE_B))
+            m.transmittance = take_colour(reader->file, PLY_TRANSMITTANCE_R);
         for (int c = 0; c < BANDS; c++)
             if (!(m.reflectance.band[c] >= 0.0 && m.reflectance.band[c] < 1.0) ||
-                !(m.emission.band[c] >= 0.0 && m.emission.band[c] <= 1e30))
+                !(m.emission.band[c] >= 0.0 && m.emission.band[c] <= 1e30) ||
+                !(m.transmittance.band[c] >= 0.0 && m.transmittance.band[c] <= 1.0))
                 return ply_fail(reader->file, reader->error, "not a material");
         reader->materials[i] = m;
     }
@@ -350,7 +354,7 @@ void solution_write_header(struct output *output, const struct scene *scene, boo
                 "element material %lld\n"
                 "property double reflectance_r\nproperty double reflectance_g\n"
                 "property double reflectance_b\nproperty double emission_r\n"
-                "property double emission_g\nproperty double emission_b\n"
+                "property double emission_g\nproperty double emission_b\n%s"
                 "element root_corner %lld\n"
                 "property double x\nproperty double y\nproperty double z\n"
                 "property int material\n%s"
@@ -358,7 +362,12 @@ void solution_write_header(struct output *output, const struct scene *scene, boo
                 "property double x\nproperty double y\nproperty double z\n"
                 "property int exponent\n"
                 "property uchar two_sided\nproperty uchar two_sided_lamps\n%s",
-                (long long)scene->material_count, 3 * (long long)scene->input_count,
+                (long long)scene->material_count,
+                scene->has_panes ? "property double transmittance_r\n"
+                                   "property double transmittance_g\n"
+                                   "property double transmittance_b\n"
+                                 : "",
+                3 * (long long)scene->input_count,
                 scene->normals ? "property double nx\nproperty double ny\n"
                                  "property double nz\n"
                                : "",
@@ -374,6 +383,8 @@ void solution_write_scene(struct output *output, const struct scene *scene,
     for (int32_t i = 0; i < scene->material_count; i++) {
         put_doubles(output, scene->materials[i].reflectance.band, BANDS);
         put_doubles(output, scene->materials[i].emission.band, BANDS);
+        if (scene->has_panes)
+            put_doubles(output, scene->materials[i].transmittance.band, BANDS);
     }
     for (int64_t i = 0; i < 3 * (int64_t)scene->input_count; i++) {
         put_point(output, scene->triangles[i / 3].corner[i % 3]);

@@ -3,7 +3,8 @@
  *
  * Behind vertices and faces (io/picture/mesh.h) a PLY file has the elements
  *
- *     material     double reflectance_r .. _b, 1; emission_r .. _b, W/m^2
+ *     material     double reflectance_r .. _b, 1; emission_r .. _b, W/m^2; where there
+ *                  are panes, transmittance_r .. _b, 1
  *     root_corner  double x y z in scene units (geom/scene.h), int material; double
  *                  nx ny nz, the normal, where the scene has normals. Those of input
  *                  triangle i are 3 i, 3 i + 1 and 3 i + 2

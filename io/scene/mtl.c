@@ -11,7 +11,8 @@
  * nearly a furnace. So is a Kd as `spectral` or `xyz`: the reflectance with an X, Y and Z
  * depends on the light of the measurement, which no file says. Such a Ke has no neutral
  * value, and is 0. Where d and Tr contradict each other, d counts: programs disagree on
- * the meaning of Tr 1.
+ * the meaning of Tr 1. Without both, Tf or illum 4, 6, 7 or 9 tell of a clear pane; Tf 1
+ * alone does not: programs write it for walls.
  *
  * Kd and Ke themselves are read strictly: a negative or misspelt number would give a
  * wrong picture without a message. */
@@ -22,7 +23,8 @@
 
 #include "geom/alloc.h"
 
-static const struct material NEUTRAL = {{{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}}};
+static const struct material NEUTRAL = {.reflectance = {{0.5, 0.5, 0.5}}};
+static const struct rgb WHITE = {{1.0, 1.0, 1.0}};
 
 int32_t mtl_find(struct mtl_table *table, const char *name)
 {
@@ -30,7 +32,8 @@ int32_t mtl_find(struct mtl_table *table, const char *name)
     int32_t number = text_names_add(&table->names, name);
     if (number == count) {
         RESERVE(table->entries, &table->capacity, (int64_t)count + 1);
-        table->entries[number] = (struct mtl_entry){.material = NEUTRAL};
+        table->entries[number] = (struct mtl_entry){.material = NEUTRAL,
+                                                    .opacity = 1.0, .filter = WHITE};
     }
     return number;
 }
@@ -101,13 +104,19 @@ static int32_t start_material(struct mtl_table *table, char *rest)
     const char *name = text_trim(rest);
     int32_t number = mtl_find(table, name);
     bool used = table->entries[number].used;
-    table->entries[number] = (struct mtl_entry){.defined = true, .used = used};
+    table->entries[number] = (struct mtl_entry){.defined = true, .used = used,
+                                                .opacity = 1.0, .filter = WHITE};
     table->nameless += *name == '\0';
     return number;
 }
 
-/* Notes d or Tr for a warning: surfaces are opaque. A malformed value is no error. */
-static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
+static double within_1(double value)
+{
+    return value < 0.0 ? 0.0 : value > 1.0 ? 1.0 : value;
+}
+
+/* Takes d or Tr. A malformed value is no error. */
+static void take_opacity(struct mtl_entry *entry, char *rest, bool is_d)
 {
     const char *word = text_word(&rest);
     double value;
@@ -115,8 +124,34 @@ static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
         word = text_word(&rest);
     if (!word || !text_is_number(word, &value) || (entry->has_d && !is_d))
         return;
-    entry->transparent = is_d ? value < 1.0 : value > 0.0;
-    entry->has_d = is_d;
+    entry->opacity = within_1(is_d ? value : 1.0 - value);
+    *(is_d ? &entry->has_d : &entry->has_tr) = true;
+}
+
+/* Takes Tf, of one number or three. A malformed one is no error. */
+static void take_filter(struct mtl_entry *entry, char *rest)
+{
+    double value = 1.0;
+    int count = 0;
+    for (const char *word; count < BANDS && (word = text_word(&rest)) != NULL; count++) {
+        if (!text_is_number(word, &value))
+            break;
+        entry->filter.band[count] = within_1(value);
+        entry->clear |= value < 1.0;
+    }
+    for (int c = count; c < BANDS && count == 1; c++)
+        entry->filter.band[c] = entry->filter.band[0];
+}
+
+/* Takes illum for panes alone. True if no more is meant. */
+static bool take_illum(struct mtl_entry *entry, char *rest)
+{
+    const char *word = text_word(&rest);
+    double value;
+    bool clear = word && text_is_number(word, &value) &&
+                 (value == 4.0 || value == 6.0 || value == 7.0 || value == 9.0);
+    entry->clear |= clear;
+    return clear;
 }
 
 static char *next_word(char *at)
@@ -156,7 +191,7 @@ static bool is_plain(const char *keyword, char *rest)
     } PLAIN[] = {{"ka", 0, 1e9}, {"ns", 0, 1e9},   {"ni", 0, 1e9},  {"sharpness", 0, 1e9},
                  {"pr", 0, 1e9}, {"pcr", 0, 1e9},  {"illum", 1, 2}, {"anisor", 0, 1e9},
                  {"ks", 0, 0},   {"pm", 0, 0},     {"ps", 0, 0},    {"pc", 0, 0},
-                 {"tf", 1, 1},   {"aniso", 0, 0}};
+                 {"aniso", 0, 0}};
     size_t row = 0, rows = sizeof PLAIN / sizeof PLAIN[0];
     double value;
     while (row < rows && !is_keyword(keyword, PLAIN[row].keyword))
@@ -187,7 +222,11 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
         return true;
     struct mtl_entry *entry = &table->entries[*current];
     if (is_keyword(keyword, "d") || is_keyword(keyword, "tr"))
-        note_opacity(entry, line, is_keyword(keyword, "d"));
+        take_opacity(entry, line, is_keyword(keyword, "d"));
+    else if (is_keyword(keyword, "tf"))
+        take_filter(entry, line);
+    else if (is_keyword(keyword, "illum") && take_illum(entry, line))
+        return true;
     else if (is_keyword(keyword, "map_kd") || is_keyword(keyword, "map_ke"))
         entry->maps[is_keyword(keyword, "map_ke")] = find_map(table, text, line);
     else if (!is_colour && !is_plain(keyword, line))
@@ -215,6 +254,30 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct err
     good = mtl_of_text(table, &text, error);
     text_free(&text);
     return good;
+}
+
+/* Where neither d nor Tr is given, a clear material has d 0. */
+static double opacity_of(const struct mtl_entry *entry)
+{
+    bool told = entry->has_d || entry->has_tr;
+    return !told && entry->clear ? 0.0 : entry->opacity;
+}
+
+struct rgb mtl_transmittance(const struct mtl_entry *entry)
+{
+    struct rgb through = entry->filter;
+    for (int c = 0; c < BANDS; c++)
+        through.band[c] *= 1.0 - opacity_of(entry);
+    return through;
+}
+
+void mtl_make_pane(struct mtl_entry *entry)
+{
+    struct material *material = &entry->material;
+    material->transmittance = mtl_transmittance(entry);
+    material->emission = (struct rgb){{0.0, 0.0, 0.0}};
+    for (int c = 0; c < BANDS; c++)
+        material->reflectance.band[c] *= opacity_of(entry);
 }
 
 void mtl_free(struct mtl_table *table)

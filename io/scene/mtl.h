@@ -2,9 +2,10 @@
  *
  * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E,
  * W/m^2), each as three numbers or one for grey, in capitals or not; map_Kd and map_Ke,
- * pictures (io/scene/maps.h). d, Tr, and Kd and Ke in the forms `spectral` and
- * `xyz` only set flags for a warning: every material is opaque. All other statements are
- * skipped, and named unless nothing is lost without them. */
+ * pictures (io/scene/maps.h); d, or Tr where there is none, Tf and illum, of which the
+ * transmittance of panes is made. Kd and Ke in the forms `spectral` and `xyz` only set
+ * flags for a warning. All other statements are skipped, and named unless nothing is lost
+ * without them. */
 #ifndef IO_SCENE_MTL_H
 #define IO_SCENE_MTL_H
 
@@ -19,11 +20,13 @@ struct mtl_entry {
     struct material material; /* neutral grey until defined */
     bool defined;             /* by a library */
     bool used;                /* by a face; set by the caller */
-    bool transparent;         /* d below 1 or, without d, Tr above 0 */
+    double opacity;           /* d, or 1 - Tr, in [0, 1] */
+    struct rgb filter;        /* Tf */
+    bool has_d, has_tr;       /* d, Tr was read; d overrides Tr */
+    bool clear;               /* Tf is not 1, or illum is 4, 6, 7 or 9 */
     int32_t maps[2];          /* pictures of Kd and Ke: numbers from 1; 0: none */
     bool unread;              /* has Kd or Ke as spectral or xyz */
     bool has_kd, has_ke;      /* Kd, Ke was read */
-    bool has_d;               /* d was read, which overrides Tr */
 };
 
 /* The materials defined or asked for. Starts as {0}. */
@@ -49,6 +52,13 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found,
 
 /* Does the same with a text in memory. The text stays the caller's, its lines used up. */
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
+
+/* The share of light let through, 1: 1 - d, times Tf. */
+struct rgb mtl_transmittance(const struct mtl_entry *entry);
+
+/* Makes a pane of a material that lets light through: it reflects Kd d, and emits
+ * nothing. */
+void mtl_make_pane(struct mtl_entry *entry);
 
 void mtl_free(struct mtl_table *table);
 

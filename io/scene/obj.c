@@ -275,8 +275,8 @@ static int32_t find_colour(struct obj_reader *reader)
         sum = vec3_add(sum, colours->at[vertex]);
     }
     double count = (double)reader->corners.count;
-    const struct material mean = {{{sum.x / count, sum.y / count, sum.z / count}},
-                                  {{0.0, 0.0, 0.0}}};
+    const struct material mean = {
+        .reflectance = {{sum.x / count, sum.y / count, sum.z / count}}};
     return palette_add(&reader->colours.faces, &mean);
 }
 
@@ -419,7 +419,6 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
             if (repairs->materials.count == 1)
                 find_meant(&reader->materials, repairs);
         }
-        repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && (entry->maps[0] || entry->maps[1]);
         repairs->unread += entry->used && entry->unread;
     }
@@ -475,6 +474,8 @@ static struct palette mix_materials(const struct obj_reader *reader)
     struct palette mixed = {0};
     for (int64_t i = 0; i < reader->triangles.count; i++) {
         struct obj_triangle *triangle = &reader->triangles.at[i];
+        if (material_is_pane(&entries[triangle->material].material))
+            triangle->colour = -1; /* a pane is of one colour */
         if (triangle->colour < 0)
             continue;
         struct material material = reader->colours.faces.materials[triangle->colour];
@@ -482,6 +483,27 @@ static struct palette mix_materials(const struct obj_reader *reader)
         triangle->colour = palette_add(&mixed, &material);
     }
     return mixed;
+}
+
+/* Makes panes of materials that let light through, unless all faces would be panes:
+ * programs write illum 4 or Tr 1 for walls. */
+static void make_panes(struct obj_reader *reader)
+{
+    struct obj_repairs *repairs = reader->repairs;
+    struct mtl_entry *entries = reader->materials.entries;
+    bool all = true;
+    for (int64_t i = 0; i < reader->triangles.count && all; i++) {
+        const struct mtl_entry *entry = &entries[reader->triangles.at[i].material];
+        all = rgb_sum(mtl_transmittance(entry)) > 0.0;
+    }
+    for (int32_t i = 0; i < reader->materials.names.count; i++) {
+        bool pane = entries[i].used && rgb_sum(mtl_transmittance(&entries[i])) > 0.0;
+        repairs->panes += pane;
+        repairs->glowing += pane && material_emits(&entries[i].material);
+        if (pane && !all)
+            mtl_make_pane(&entries[i]);
+    }
+    repairs->all_panes = all;
 }
 
 static struct scene *make_scene(const struct obj_reader *reader)
@@ -541,7 +563,7 @@ static void take_maps(struct obj_reader *reader)
     maps_take(&reader->materials, faces, triangles->count, reader->repairs->mean_of,
               &reader->repairs->textures, reader->repairs->files, colours);
     for (int64_t i = 0; i < triangles->count; i++) {
-        const struct material own = {colours[i], {{0.0, 0.0, 0.0}}};
+        const struct material own = {.reflectance = colours[i]};
         if (triangles->at[i].colour < 0 && colours[i].band[0] >= 0.0)
             triangles->at[i].colour = palette_add(&reader->colours.faces, &own);
     }
@@ -583,6 +605,8 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
     }
     if (good)
         take_maps(&reader);
+    if (good)
+        make_panes(&reader);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
     alloc_free(reader.colours.vertices.at);

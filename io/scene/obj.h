@@ -30,7 +30,9 @@ struct obj_repairs {
     struct text_missing materials; /* names without a definition: neutral grey instead */
     struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;           /* corners whose vn is absent or 0: without a normal */
-    int64_t transparent;           /* used materials with d or Tr: opaque instead */
+    int64_t panes;                 /* used materials that let light through */
+    int64_t glowing;               /* of these, those with Ke, which is passed over */
+    bool all_panes;                /* no face has another material: all are opaque */
     int64_t nameless;              /* newmtl lines without a name, as of usemtl */
     int64_t textured;              /* used materials with pictures: of one colour */
     struct text_missing textures;  /* pictures of these whose mean is not found */

@@ -23,7 +23,7 @@ enum {
     CORNER_MAX = 1 << 14       /* corners of one face: cutting it takes quadratic time */
 };
 
-static const struct material NEUTRAL = {{{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}}};
+static const struct material NEUTRAL = {.reflectance = {{0.5, 0.5, 0.5}}};
 
 struct face {
     int64_t first;    /* of its corners */

@@ -52,6 +52,8 @@ static const struct {
               {PLY_MATERIAL, "reflectance_r reflectance_g reflectance_b",
                PLY_REFLECTANCE_R},
               {PLY_MATERIAL, "emission_r emission_g emission_b", PLY_EMISSION_R},
+              {PLY_MATERIAL, "transmittance_r transmittance_g transmittance_b",
+               PLY_TRANSMITTANCE_R},
               {PLY_ROOT_CORNER, "x y z", PLY_X},
               {PLY_ROOT_CORNER, "nx ny nz material", PLY_NX},
               {PLY_SOLUTION, "x y z", PLY_X},

@@ -177,7 +177,8 @@ static void find_element(const struct scene *scene, struct element *element, dou
 static void make_truth(const struct scene *scene, struct truth *truth)
 {
     struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+        octree_create(scene->triangles, scene_blocking_planes(scene),
+                      scene->input_count);
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
     double brightest = 0.0;
     for (int32_t m = 0; m < scene->material_count; m++)

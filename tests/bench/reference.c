@@ -65,7 +65,8 @@ static void make_reference(const struct comm *comm, const struct arguments *argu
 {
     double start = comm_seconds();
     struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+        octree_create(scene->triangles, scene_blocking_planes(scene),
+                      scene->input_count);
     int samples = (int)arguments->numbers[1];
     struct truth_paths paths = {samples, arguments->no_points ? 0 : (samples + 3) / 4};
     struct truth truth =

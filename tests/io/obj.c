@@ -297,8 +297,13 @@ static void test_notes(void)
         "usemtl clear\nf 1 2 3\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl halo\nf 1 2 3\n"
         "usemtl words\nf 1 2 3\nusemtl painted\nf 1 2 3\nusemtl dyed\nf 1 2 3\n"
         "usemtl dyed too\nf 1 2 3\nusemtl lit\nf 1 2 3\nusemtl dim\nf 1 2 3\n");
-    tap_ok(scene && repairs.transparent == 3,
-           "transparent materials that are used are counted");
+    tap_ok(scene && repairs.panes == 3 && !repairs.all_panes,
+           "materials of panes that are used are counted");
+    tap_ok(scene && !material_is_pane(material_at(scene, 0)) &&
+               !material_is_pane(material_at(scene, 1)) &&
+               colour_is(material_at(scene, 2)->transmittance, 0.5, 0.5, 0.5) &&
+               colour_is(material_at(scene, 4)->transmittance, 0.25, 0.25, 0.25),
+           "they let 1 - d through, or Tr; d counts where Tr contradicts it");
     tap_ok(scene && repairs.textured == 3 &&
                colour_is(material_at(scene, 7)->reflectance, 0.5, 0.5, 0.5) &&
                colour_is(material_at(scene, 8)->reflectance, 0.25, 0, 0) &&
@@ -388,8 +393,8 @@ static void test_passed(void)
                     "bump -bm 2 b.png\nmap_Bump b.png\nKs 1 1 1\nillum x\nhello\n");
     scene = read_scene("mtllib obj_test.mtl\n" CORNERS
                        "s 1\nusemtl a\nf 1 2 3\nusemap x\nbevel on\n");
-    tap_ok(scene && repairs.passed_count == 8 &&
-               strcmp(repairs.passed, "Ks illum Tf Pm norm bump map_Bump hello") == 0,
+    tap_ok(scene && repairs.passed_count == 7 &&
+               strcmp(repairs.passed, "Ks illum Pm norm bump map_Bump hello") == 0,
            "others are named: %s", repairs.passed);
     tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 6,
            "as are settings of an OBJ that would change light or picture");

@@ -170,12 +170,12 @@ static struct bytes make_binary(bool big)
 }
 
 /* Materials that the tests expect. */
-static const struct material BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}},
-                             GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
-                             MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}},
-                             OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
-                             BY_FIFTHS = {{{0.2, 0.4, 0.6}}, {{0, 0, 0}}},
-                             GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
+static const struct material BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}, {{0}}},
+                             GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}, {{0}}},
+                             MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}, {{0}}},
+                             OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}, {{0}}},
+                             BY_FIFTHS = {{{0.2, 0.4, 0.6}}, {{0, 0, 0}}, {{0}}},
+                             GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}, {{0}}};
 
 static void check_material(const struct scene *scene, int32_t triangle,
                            const struct material *expected, const char *name)
@@ -333,11 +333,12 @@ static void test_palette(void)
     bool right = true;
     for (int round = 0; round < 2; round++)
         for (int i = 0; i < 5000; i++) {
-            struct material material = {{{i % 17 / 17.0, i / 17, 0.5}}, {{0, 0, i % 3}}};
+            struct material material = {
+                {{i % 17 / 17.0, i / 17, 0.5}}, {{0, 0, i % 3}}, {{0}}};
             right = palette_add(&palette, &material) == i && right;
         }
     tap_ok(right && palette.count == 5000, "5000 materials keep their numbers");
-    struct material minus = {{{0.0, 0.0, 0.5}}, {{-0.0, 0, 0}}};
+    struct material minus = {{{0.0, 0.0, 0.5}}, {{-0.0, 0, 0}}, {{0}}};
     tap_ok(palette_add(&palette, &minus) == 0, "-0 is 0");
     palette_free(&palette);
 }

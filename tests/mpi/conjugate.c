@@ -325,7 +325,8 @@ static void test_bound_is_sharp(const struct comm *comm)
     struct scene *scene = make_scene(0.0);
     for (int32_t i = 0; i < ROOTS; i++) {
         scene->areas[i] = area;
-        scene->materials[i] = (struct material){{{rho, rho, rho}}, {{1.0, 1.0, 1.0}}};
+        scene->materials[i] = (struct material){.reflectance = {{rho, rho, rho}},
+                                                 .emission = {{1.0, 1.0, 1.0}}};
     }
     struct solver *solver = beyond_create(comm, scene, NULL, &criterion);
     solver->turn.first_new = solver->model.forest->count;

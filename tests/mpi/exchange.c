@@ -287,8 +287,8 @@ static void test_proxies(const struct comm *comm, const struct comm *self,
     criterion.balance = balance;
     struct scene *cube = cube_create();
     for (int face = 0; face < 6; face++)
-        cube->materials[face] =
-            (struct material){{{0.5, 0.5, 0.2}}, {{face == 1, 0, face == 2}}};
+        cube->materials[face] = (struct material){
+            .reflectance = {{0.5, 0.5, 0.2}}, .emission = {{face == 1, 0, face == 2}}};
     struct octree *octree = octree_of(cube);
     struct solver *solver = beyond_create(comm, cube, octree, &criterion);
     struct solver *whole = beyond_create(self, cube, octree, &criterion);
@@ -330,8 +330,9 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     struct solver *solvers[2];
     struct scene *cube = cube_create();
     for (int face = 0; face < 6; face++)
-        cube->materials[face] = (struct material){{{0.3 + 0.1 * face, 0.5, 0.2}},
-                                                  {{face == 1, face == 1, face == 2}}};
+        cube->materials[face] = (struct material){
+            .reflectance = {{0.3 + 0.1 * face, 0.5, 0.2}},
+            .emission = {{face == 1, face == 1, face == 2}}};
     struct octree *octree = octree_of(cube);
     for (int k = 0; k < 2; k++) {
         solvers[k] = beyond_create(comms[k], cube, octree, criterion);
@@ -384,7 +385,8 @@ static void test_bounds(const struct comm *comm, const struct comm *self,
     struct scene *cube = cube_create();
     for (int face = 0; face < 6; face++)
         cube->materials[face] =
-            (struct material){{{0.5, 0.1 * face, 0.2}}, {{face == 1, 0.0, 0.0}}};
+            (struct material){.reflectance = {{0.5, 0.1 * face, 0.2}},
+                              .emission = {{face == 1, 0.0, 0.0}}};
     struct octree *octree = octree_of(cube);
     for (int k = 0; k < 2; k++) {
         solvers[k] = beyond_create(comms[k], cube, octree, criterion);

@@ -8,7 +8,7 @@
 
 static void test_energy(void)
 {
-    struct material lamp = {{{0.5, 0.5, 0.5}}, {{1.0, 2.0, 4.0}}};
+    struct material lamp = {{{0.5, 0.5, 0.5}}, {{1.0, 2.0, 4.0}}, {{0}}};
     struct world world = make_pair(1.0, material_grey(0.5, 0), lamp, NULL);
     struct model *model = &world.model;
     struct link link = link_of(0, 1), swapped = link_of(1, 0);

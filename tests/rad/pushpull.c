@@ -17,8 +17,9 @@ static struct world make_world(void)
     struct random random = random_seed(1);
     soup_add_random(&soup, &random, ROOTS, 0.5, 0.3);
     soup.items[NO_AREA].corner[2] = soup.items[NO_AREA].corner[0];
-    paint_with(&soup, (struct material){{{0.5, 0.25, 0.75}}, {{1.0, 2.0, 0.5}}});
-    paint_with(&soup, (struct material){{{0.98, 0.0, 0.1}}, {{0.0, 0.0, 0.0}}});
+    paint_with(&soup, (struct material){.reflectance = {{0.5, 0.25, 0.75}},
+                                         .emission = {{1.0, 2.0, 0.5}}});
+    paint_with(&soup, (struct material){.reflectance = {{0.98, 0.0, 0.1}}});
     paint(&soup, 0, 0);
     struct scene *scene = scene_of_soup(&soup);
     for (int32_t i = 0; i < ROOTS; i++)

@@ -63,7 +63,8 @@ static struct world furnace(bool two_sided)
 {
     struct soup soup = {0};
     soup_add_box(&soup, point(-1, -1, -1), point(1, 2, 1), 1, !two_sided);
-    paint_with(&soup, (struct material){{{0.5, 0.8, 0.0}}, {{1.0, 2.0, 3.0}}});
+    paint_with(&soup, (struct material){.reflectance = {{0.5, 0.8, 0.0}},
+                                         .emission = {{1.0, 2.0, 3.0}}});
     struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = scene->two_sided_lamps = two_sided;
     return world_make(scene);
