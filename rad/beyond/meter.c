@@ -15,6 +15,8 @@
  * region. */
 #include "rad/beyond/meter.h"
 
+#include <math.h>
+
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/lambert.h"
@@ -43,6 +45,7 @@ struct meter meter_make(const struct forest *forest, const struct octree *octree
     struct vec3 low = {0.0, 0.0, 0.0}, high = low;
     bool none = true;
     meter.counts = alloc_array(1, sizeof *meter.counts);
+    meter.panes = panes_create(scene);
     meter.lamps = alloc_array((size_t)roots, sizeof *meter.lamps);
     for (int32_t root = 0; root < roots; root++) {
         if (!(scene_root_own_area(scene, root) > 0.0))
@@ -64,6 +67,7 @@ void meter_free(struct meter *meter)
     alloc_free(meter->lamps);
     alloc_free(meter->shares);
     alloc_free(meter->counts);
+    panes_destroy(meter->panes);
 }
 
 /* The distance of a root's plane along a ray, in units of its direction. */
@@ -87,25 +91,32 @@ static bool sees(const struct meter *meter, struct vec3 x, struct vec3 y, int32_
     return root == lamp || (root >= 0 && distance_to(scene, root, x, d) > WHOLE);
 }
 
-/* Returns the visible share of a lamp, by `count` segments. */
-static double visible_share(const struct meter *meter, struct vec3 x, struct vec3 normal,
-                            int32_t lamp, int count, uint64_t seed)
+/* Returns the share of a lamp's light that arrives, by `count` segments. */
+static struct rgb visible_share(const struct meter *meter, struct vec3 x,
+                                struct vec3 normal, int32_t lamp, int count,
+                                uint64_t seed)
 {
     struct triangle t = scene_root_triangle(meter->forest->scene, lamp);
     struct vec3 facing = scene_root_plane(meter->forest->scene, lamp).normal;
     struct sequence sequence = sequence_start(hash_mix(seed) + (uint64_t)lamp);
-    double seen = 0.0, all = 0.0, u[SEQUENCE_DIMENSIONS];
+    struct rgb seen = {{0.0, 0.0, 0.0}};
+    double all = 0.0, u[SEQUENCE_DIMENSIONS];
     int above = 0; /* the horizon */
     for (int i = 0; i < TRIES * count && above < count; i++) {
         sequence_point(&sequence, (uint32_t)i, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);
         double kernel = point_kernel(x, normal, y, facing);
+        struct rgb weight = {{kernel, kernel, kernel}};
         above += kernel > 0.0;
         all += kernel;
-        if (kernel > 0.0 && sees(meter, x, y, lamp))
-            seen += kernel;
+        if (!(kernel > 0.0) || !sees(meter, x, y, lamp))
+            continue;
+        panes_filter(meter->panes, pane_walk_to(x, y), &weight, meter->counts);
+        rgb_add(&seen, 1.0, weight);
     }
-    return all > 0.0 ? seen / all : 0.0;
+    for (int c = 0; c < BANDS && all > 0.0; c++)
+        seen.band[c] /= all;
+    return seen;
 }
 
 /* The leaf of a root at a point of it. */
@@ -135,17 +146,25 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
         struct octree_hit hit;
         sequence_point(&sequence, (uint32_t)i, u);
         struct vec3 d = cosine_direction(normal, along, u[0], u[1]);
-        if (!octree_first_hit(meter->octree, x, d, false, &hit, meter->counts))
-            continue;
-        int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+        bool met = octree_first_hit(meter->octree, x, d, false, &hit, meter->counts);
+        int32_t root = met ? scene_root_on(scene, hit.triangle, hit.front) : -1;
+        double far = root >= 0 ? distance_to(scene, root, x, d) : HUGE_VAL;
+        struct rgb weight = {{1.0 / rays, 1.0 / rays, 1.0 / rays}};
+        struct pane_walk walk = {x, d, far, -1};
+        panes_cross(meter->panes, walk, forest, &weight, &sum, meter->counts);
         if (root < 0)
             continue;
-        double far = distance_to(scene, root, x, d);
         int32_t leaf = leaf_at(forest, root, vec3_add(x, vec3_scale(d, far)));
-        rgb_add(&sum, 1.0 / rays, forest->radiosity[leaf]);
-        rgb_add(scene_is_sky(scene, root) ? lamps : &sum,
-                scene_is_sky(scene, root) ? 1.0 / rays : -1.0 / rays,
-                scene_root_material(scene, root)->emission);
+        struct rgb emission = scene_root_material(scene, root)->emission;
+        struct rgb *straight = scene_is_sky(scene, root) ? lamps : NULL;
+        for (int c = 0; c < BANDS; c++) {
+            double part = weight.band[c];
+            sum.band[c] += part * forest->radiosity[leaf].band[c];
+            if (straight)
+                straight->band[c] += part * emission.band[c];
+            else
+                sum.band[c] -= part * emission.band[c];
+        }
         *error += meter->error ? (double)meter->error[leaf] / rays : 0.0;
     }
     return sum;
@@ -175,9 +194,10 @@ struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 
             double factor = meter->shares[k], part = factor * rgb_sum(e) / all;
             if (!(factor > 0.0))
                 continue;
-            factor *= visible_share(meter, x, normal, meter->lamps[k],
-                                    1 + (int)(part * each), own);
-            rgb_add(&lamps, factor, e);
+            struct rgb seen = visible_share(meter, x, normal, meter->lamps[k],
+                                            1 + (int)(part * each), own);
+            for (int c = 0; c < BANDS; c++)
+                lamps.band[c] += factor * seen.band[c] * e.band[c];
         }
         rgb_add(&light, 1.0, lamps);
         rgb_add(&lamps, 1.0, sky);

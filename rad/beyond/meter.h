@@ -5,12 +5,13 @@
 #include <stdint.h>
 
 #include "octree/octree.h"
-#include "rad/patch.h"
+#include "rad/beyond/panes.h"
 
 struct meter {
     const struct forest *forest;  /* borrowed: its scene with a solution */
     const struct octree *octree;  /* borrowed */
     const float *error;           /* [patches] borrowed: of B of leaves, W/m^2; or NULL */
+    struct panes *panes;          /* owned; NULL: none */
     int32_t *lamps;               /* [lamp_count] roots, but those of a sky */
     int64_t lamp_count;
     double *shares;               /* [lamp_count] room for the light of each at a point */

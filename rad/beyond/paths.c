@@ -26,6 +26,10 @@
  * twice. Rejected: the lights alone. G has no bound where a light touches a surface, nor
  * has the variance there; here both terms are at most the light's own E.
  *
+ * A ray crosses a pane, or ends there, with probabilities like those of its largest
+ * transmittance and reflectance, and has 1 over that as a factor; a segment to a light is
+ * multiplied by the transmittances of all panes.
+ *
  * A light path goes the other way: from a point of the lights, chosen as above, in a
  * direction whose density is the cosine over pi, from surface to surface with the same
  * chances of going on. Light paths reach all the surfaces of a scene at once, which is
@@ -39,6 +43,8 @@
  * random numbers, and so are light paths: a lattice would correlate the errors of all
  * elements. */
 #include "rad/beyond/paths.h"
+
+#include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
@@ -162,6 +168,7 @@ struct pathtracer pathtracer_make(const struct scene *scene, const struct octree
 {
     struct pathtracer pathtracer = {.scene = scene, .octree = octree};
     pathtracer.counts = alloc_array(1, sizeof *pathtracer.counts);
+    pathtracer.panes = panes_create(scene);
     int32_t roots = scene_root_count(scene);
     pathtracer.power = alloc_array((size_t)roots, sizeof *pathtracer.power);
     pathtracer_favour(&pathtracer, NULL);
@@ -173,6 +180,7 @@ void pathtracer_free(struct pathtracer *pathtracer)
 {
     alloc_free(pathtracer->power);
     alloc_free(pathtracer->hidden);
+    panes_destroy(pathtracer->panes);
     alloc_free(pathtracer->counts);
     *pathtracer = (struct pathtracer){.scene = NULL};
 }
@@ -228,8 +236,12 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct a
     double g = coupling(pathtracer, p, &light);
     double density = favoured(pathtracer, light.root) / power;
     double both = density + (pathtracer->hidden[light.root] ? 0.0 : g);
-    if (g > 0.0 && !is_blocked(pathtracer, p, &light))
-        add_light(sum, throughput, g / both, emission);
+    if (!(g > 0.0) || is_blocked(pathtracer, p, &light))
+        return;
+    struct vec3 up = scene_root_plane(scene, p->root).normal;
+    struct pane_walk walk = pane_walk_to(point_above(p->x, up), light.x);
+    panes_filter(pathtracer->panes, walk, &throughput, pathtracer->counts);
+    add_light(sum, throughput, g / both, emission);
 }
 
 /* Irradiance from the light met by a path. */
@@ -247,15 +259,48 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct arri
 
 /* --- paths --- */
 
+static double largest(struct rgb colour)
+{
+    return real_max(colour.band[0], real_max(colour.band[1], colour.band[2]));
+}
+
+/* Finds where a ray arrives, on a blocker or a pane. False for neither. */
+static bool travel(const struct pathtracer *pathtracer, struct half_line ray,
+                   bool fronts_only, struct draw *draw, struct rgb *throughput,
+                   struct arrival *q)
+{
+    bool arrives = arrive(pathtracer, ray.origin, ray.direction, fronts_only, q);
+    struct pane_walk walk = {ray.origin, ray.direction, HUGE_VAL, -1};
+    if (arrives)
+        walk.left = vec3_length(vec3_sub(q->x, ray.origin));
+    const struct panes *panes = pathtracer->panes;
+    while (panes && panes_next(panes, &walk, pathtracer->counts)) {
+        const struct material *pane = scene_root_material(pathtracer->scene, walk.root);
+        double rho = largest(pane->reflectance);
+        double ends = rho / (rho + largest(pane->transmittance));
+        bool on = !(rho > 0.0) || hash_unit(draw->next++) >= ends;
+        if (on)
+            pane_filter(pathtracer->scene, walk.root, throughput);
+        for (int c = 0; c < BANDS; c++)
+            throughput->band[c] /= on ? 1.0 - ends : ends;
+        if (!on) {
+            *q = (struct arrival){walk.at, walk.root};
+            return true;
+        }
+    }
+    return arrives;
+}
+
 /* Finds where a ray from a surface arrives, in a direction whose density is its cosine to
  * the normal over pi. False for a miss or a black back. */
 static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
-                   struct draw *draw, struct arrival *q)
+                   struct draw *draw, struct rgb *throughput, struct arrival *q)
 {
     struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
     double u = draw_next(draw), v = draw_next(draw);
     struct vec3 direction = cosine_direction(normal, direction_along(normal), u, v);
-    return arrive(pathtracer, point_above(p->x, normal), direction, false, q);
+    struct half_line ray = {point_above(p->x, normal), direction};
+    return travel(pathtracer, ray, false, draw, throughput, q);
 }
 
 /* The probability of going on from a surface. */
@@ -297,7 +342,7 @@ static struct rgb irradiance(const struct pathtracer *pathtracer, struct arrival
     for (;;) {
         struct arrival q;
         add_chosen_light(pathtracer, &p, throughput, draw, &sum);
-        if (!follow(pathtracer, &p, draw, &q))
+        if (!follow(pathtracer, &p, draw, &throughput, &q))
             return sum;
         add_met_light(pathtracer, &p, &q, throughput, &sum);
         struct rgb before = throughput;
@@ -341,7 +386,7 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     struct rgb light = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
     add_light(&light, one, 1.0 / rgb_sum(emission), emission);
     for (;;) {
-        if (!follow(pathtracer, &p, &draw, &q))
+        if (!follow(pathtracer, &p, &draw, &light, &q))
             return;
         struct landing landing = {.root = q.root, .light = light};
         t = scene_root_triangle(scene, q.root);
@@ -357,20 +402,22 @@ struct rgb pathtracer_seen(const struct pathtracer *pathtracer, pixel_ray *ray,
                            const void *pixel, bool fronts_only, int samples,
                            uint64_t seed)
 {
-    struct rgb sum = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
+    struct rgb sum = {{0.0, 0.0, 0.0}};
     struct draw draw = draw_make(seed);
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
         struct arrival seen;
         draw.used = 0;
         double u = draw_next(&draw), v = draw_next(&draw);
         struct half_line eye = ray(pixel, u, v);
-        if (!arrive(pathtracer, eye.origin, eye.direction, fronts_only, &seen))
+        struct rgb throughput = {{1.0, 1.0, 1.0}};
+        if (!travel(pathtracer, eye, fronts_only, &draw, &throughput, &seen))
             continue;
         const struct material *material;
         material = scene_root_material(pathtracer->scene, seen.root);
-        add_light(&sum, one, 1.0 / samples, material->emission);
-        add_light(&sum, material->reflectance, 1.0 / samples,
-                  irradiance(pathtracer, seen, &draw));
+        add_light(&sum, throughput, 1.0 / samples, material->emission);
+        for (int c = 0; c < BANDS; c++)
+            throughput.band[c] *= material->reflectance.band[c];
+        add_light(&sum, throughput, 1.0 / samples, irradiance(pathtracer, seen, &draw));
     }
     return sum;
 }

@@ -13,11 +13,13 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 #include "rad/patch.h"
+#include "rad/beyond/panes.h"
 #include "rad/beyond/sample.h"
 
 struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, with some emission */
     const struct octree *octree;  /* borrowed, the scene's */
+    struct panes *panes;          /* NULL: none */
     double *power;                /* [roots] of roots 0 .. r, W in square scene units,
                                      each times its favour */
     const double *favour;         /* [roots] borrowed; NULL: 1 */

@@ -1,6 +1,7 @@
 /* Finding spaces.
  *
- * A few rays from each root connect roots: what they connect is a space. Rays prove
+ * A few rays from each root connect roots: what they connect is a space. Half of those
+ * from a pane leave its other side, and so connect the spaces that it parts. Rays prove
  * nothing: a space may have a gap that none has found. So a space tells how fine its
  * light is to be, and not that no other light gets in. */
 #include "rad/beyond/spaces.h"
@@ -110,7 +111,9 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
             if (!(scene_root_area(scene, root) > 0.0))
                 continue;
             uint64_t seed = hash_mix((uint64_t)root) + 8 * (uint64_t)i;
-            struct vec3 normal = scene_root_plane(scene, root).normal;
+            bool behind = material_is_pane(scene_root_material(scene, root)) && i % 2;
+            struct vec3 normal = vec3_scale(scene_root_plane(scene, root).normal,
+                                            behind ? -1.0 : 1.0);
             struct half_line ray = ray_sample(&t, normal, seed, i, rays);
             *at = root_met(scene, octree, &ray, all, &counts);
         }
