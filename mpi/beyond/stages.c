@@ -154,11 +154,15 @@ void stages_make_cuts(struct solver *solver, struct final_gather *gather,
         known[region] = true;
         if (dealt % comm->size == comm->rank)
             cuts_at(aims->lamp_cuts, leaves[i], &gather->view->counts);
+        if (dealt % comm->size == comm->rank && aims->panes)
+            cuts_at(aims->window_cuts, leaves[i], &gather->view->counts);
         if ((dealt++ + comm->size / 2) % comm->size == comm->rank)
             cuts_at(aims->bright_cuts, leaves[i], &gather->view->counts);
     }
     share_cuts(comm, aims->lamp_cuts);
     share_cuts(comm, aims->bright_cuts);
+    if (aims->panes)
+        share_cuts(comm, aims->window_cuts);
     account_work(&solver->account, WORK_FINAL_GATHER,
                  final_gather_work(gather) - before, 0);
     alloc_free(known);

@@ -36,6 +36,15 @@ int32_t root_met(const struct scene *scene, const struct octree *octree,
                  const struct half_line *ray, int32_t outside,
                  struct octree_counts *counts);
 
+/* True if a sender's middle is nearer to a point than the sender's radius: rays from the
+ * point find such a sender often enough, and no segments are aimed there. */
+static inline bool point_is_beside(struct vec3 x, const struct triangle *sender)
+{
+    struct vec3 apart = vec3_sub(triangle_centroid(sender), x);
+    double radius = triangle_radius(sender);
+    return vec3_dot(apart, apart) < radius * radius;
+}
+
 /* cos cos' / (pi r^2) of the points x and y, 1 per square scene unit, without visibility;
  * 0 below a horizon. */
 static inline double point_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,

@@ -113,17 +113,26 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     double before = rgb_sum(r->light);
     if (receiver_blocker(r, shot->x, shot->y, root) >= 0)
         return 0.0;
-    if (aim->senders->reflect)
+    if (r->gather->aims->panes)
+        receiver_see_by_panes(r, aim->senders, shot->x, shot->y, patch, factor, seed);
+    else if (aim->senders->reflect)
         receiver_see(r, shot->x, shot->y, patch, factor, seed);
     else
         receiver_add_source(r, &ALL, sender_light(aim->senders, patch), factor);
     return rgb_sum(r->light) - before;
 }
 
-static double exact_factor(const struct receiver *r, const struct facet *sender)
+/* The mean over points of the leaf; of the pane, if this is smaller: then few points of
+ * the leaf may miss the part beside the pane. */
+static double exact_factor(const struct receiver *r, const struct senders *senders,
+                           const struct facet *sender)
 {
-    return mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender->triangle,
-                       &r->gather->model->estimating);
+    int64_t *work = &r->gather->model->estimating;
+    const struct facet *to = &r->facet, *from = sender;
+    if (senders->sent && from->area < to->area)
+        return from->area / to->area *
+               mean_factor(&from->triangle, from->plane.normal, &to->triangle, work);
+    return mean_factor(&to->triangle, to->plane.normal, &from->triangle, work);
 }
 
 /* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
@@ -151,7 +160,7 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
     if (!exact)
         factor = sender.area * all / (aim->index - start);
     else if (factor < 0.0)
-        factor = exact_factor(r, &sender);
+        factor = exact_factor(r, aim->senders, &sender);
     double sent = rgb_sum(sender_light(aim->senders, patch));
     for (int k = 0; k < found; k++) {
         struct shot shot = aims->shots[k]; /* light behind it may be aimed at by more */
@@ -210,7 +219,8 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 {
     int32_t patch = senders->patches[node->first];
     struct facet sender = facet_make(r->gather->model->forest, patch);
-    double factor = facets_face(&r->facet, &sender) ? exact_factor(r, &sender) : 0.0;
+    bool faces = facets_face(&r->facet, &sender);
+    double factor = faces ? exact_factor(r, senders, &sender) : 0.0;
     return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
 }
 
@@ -283,26 +293,26 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     int32_t space = node_space(cuts->senders->model, r->row->leaf);
     struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
     for (int64_t i = 0; i < cut.count; i++) {
-        const struct cut_node *node = &cuts->nodes[cut.first + i];
+        const struct cut_node node = cuts->nodes[cut.first + i]; /* paths make cuts */
         double worth = offers[i].worth;
         bool sure = worth >= each;
-        const struct sender_node *at = &cuts->senders->nodes[node->node];
-        bool unseen = at->space != space && !(node->found > 0.0);
+        const struct sender_node *at = &cuts->senders->nodes[node.node];
+        bool unseen = at->space != space && !(node.found > 0.0);
         r->by_chance |=
-            worth > 0.0 && !unseen && (!sure || is_by_chance(cuts->senders, node));
+            worth > 0.0 && !unseen && (!sure || is_by_chance(cuts->senders, &node));
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;
         struct volley before = aim.volley, *volley = &aim.volley;
         aim.sequence = sequence_start(hash_mix(r->seed + 8) ^
-                                      hash_mix((uint64_t)node->node));
+                                      hash_mix((uint64_t)node.node));
         aim.index = 0;
-        aim_at_node(r, &aim, node->node, count, sure ? 1.0 : count * weak.each / worth,
+        aim_at_node(r, &aim, node.node, count, sure ? 1.0 : count * weak.each / worth,
                     offers[i].factor);
         double direct =
             volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
         bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
-        double share = node->seen;
+        double share = node.seen;
         if (!none && at->space != space)
             r->gather->counts.crossed++;
         if (none && unseen) {
@@ -338,5 +348,11 @@ void receiver_aim(struct receiver *r)
     aim_at_cut(r, r->gather->aims->lamp_cuts, r->segments);
     r->row->lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
+    if (r->gather->aims->panes) {
+        struct rgb before = r->row->lamps;
+        aim_at_cut(r, r->gather->aims->window_cuts, r->segments);
+        r->through = rgb_sub(r->light, rgb_sub(r->row->lamps, before));
+        r->light = (struct rgb){{0.0, 0.0, 0.0}};
+    }
     memcpy(r->row->of_segments, r->row->chance, sizeof r->row->of_segments);
 }

@@ -104,9 +104,10 @@ void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
         double more = lamps ? equation_shining_area(e, i) - kept : 0.0;
         struct flows *own = balance_of(b, i);
         for (int c = 0; c < BANDS; c++) {
+            double stays = bare * (1.0 - m->transmittance.band[c]);
             own->leaving.band[c] += kept * from[i].band[c] + more * m->emission.band[c];
-            own->arriving.band[c] += bare * h[i].band[c];
-            own->spread.band[c] += bare * b->spread[i].band[c];
+            own->arriving.band[c] += stays * h[i].band[c];
+            own->spread.band[c] += stays * b->spread[i].band[c];
         }
     }
     for (int32_t s = 0; s < spaces_of(b); s++)
@@ -133,7 +134,8 @@ void balance_absorb(struct light_balance *b, struct rgb *h)
         const struct material *m = equation_material(e, i);
         struct flows *own = balance_of(b, i);
         for (int c = 0; c < BANDS; c++) {
-            double on = (double)e->covers[i].kept * m->reflectance.band[c];
+            double on = (double)e->covers[i].kept * m->reflectance.band[c] +
+                        m->transmittance.band[c];
             own->leaving.band[c] += equation_shining_area(e, i) * m->emission.band[c];
             own->arriving.band[c] += equation_bare_area(e, i) * (1.0 - on) * h[i].band[c];
         }

@@ -110,13 +110,14 @@ void receiver_find_covers(struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
+    bool pane = material_is_pane(forest_material(model->forest, r->row->leaf));
     r->row->cover.bare = 0.0f;
     r->row->cover.outside = 1.0f - (float)r->sums->inside / (float)r->rays;
     r->row->cover.open = r->row->cover.outside - (float)r->sums->in_gap / (float)r->rays;
     if (r->sums->inside == r->rays ||
         (r->gather->sums->count == 0 && !(rgb_sum(r->row->source) > 0.0)))
         return;
-    for (uint32_t i = 0; i < BARE_POINTS; i++) {
+    for (uint32_t i = 0; i < BARE_POINTS && !pane; i++) { /* below a pane is a way out */
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
         struct octree_hit hit;

@@ -91,11 +91,12 @@ void regions_destroy(struct regions *regions)
 /* --- cuts --- */
 
 struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
-                         int segments)
+                         const struct panes *panes, int segments)
 {
     struct cuts *cuts = alloc_array(1, sizeof *cuts);
     cuts->senders = senders;
     cuts->regions = regions;
+    cuts->panes = panes;
     cuts->segments = segments;
     cuts->cuts = alloc_array((size_t)regions->count, sizeof *cuts->cuts);
     for (int64_t i = 0; i < regions->count; i++)
@@ -176,6 +177,17 @@ static struct spot spot_in(const struct model *model, int32_t node, double pick,
     return spot_on(model->forest, node, u[0], u[1]);
 }
 
+/* True if a pane aimed at, other than `patch`, is between the spots: that pane brings the
+ * light. */
+static bool is_behind_pane(const struct cuts *cuts, const struct spot *from,
+                           const struct spot *to, int32_t patch,
+                           struct octree_counts *counts)
+{
+    struct pane_walk walk = pane_walk_to(point_above(from->at, from->normal),
+                                         point_above(to->at, to->normal));
+    return panes_put_aside(cuts->panes, walk, patch, counts);
+}
+
 /* Asks segments between a region and a node of its cut how many of those whose ends face
  * each other are seen: sets `asked`, and `seen` to a number. */
 static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
@@ -199,7 +211,9 @@ static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
         int32_t own[2] = {from.input, to.input}, guess = -1;
         node->asked++;
         node->seen += !octree_blocks_segment(model->octree, from.at, to.at, own, &guess,
-                                             counts);
+                                             counts) &&
+                      !(cuts->panes && is_behind_pane(cuts, &from, &to, choice.patch,
+                                                      counts));
     }
 }
 

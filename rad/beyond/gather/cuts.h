@@ -9,6 +9,7 @@
 #define RAD_BEYOND_GATHER_CUTS_H
 
 #include "rad/beyond/gather/senders.h"
+#include "rad/beyond/panes.h"
 
 /* The regions of a forest, numbered in the order of its tree: the same on all ranks. */
 struct regions {
@@ -39,6 +40,7 @@ struct cut {
 struct cuts {
     const struct senders *senders; /* borrowed */
     const struct regions *regions; /* borrowed */
+    const struct panes *panes;     /* borrowed, hide senders behind; NULL: none */
     int segments;                  /* for which cuts are made */
     struct cut *cuts;              /* [regions->count] */
     struct cut_node *nodes;        /* of all cuts made so far */
@@ -52,7 +54,7 @@ double cuts_blind_part(const struct senders *senders, const struct sender_node *
                        int32_t space);
 
 struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
-                         int segments);
+                         const struct panes *panes, int segments);
 void cuts_destroy(struct cuts *cuts); /* NULL: none */
 
 /* Returns the cut of the region of a leaf, made when first asked for: a pure function of

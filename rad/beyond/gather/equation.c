@@ -236,9 +236,9 @@ void equation_powers(const struct equation *e, const struct rgb *h,
         if (scene_is_sky(model->scene, (int32_t)root))
             continue;
         for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c];
-            *absorbed += bare * (1.0 - rho) * h[i].band[c];
-            arriving += bare * h[i].band[c];
+            double rho = m->reflectance.band[c], stays = 1.0 - m->transmittance.band[c];
+            *absorbed += bare * (stays - rho) * h[i].band[c];
+            arriving += bare * stays * h[i].band[c];
             leaving += bare * (b[i].band[c] - m->emission.band[c]) +
                        e->areas[i] * m->emission.band[c]; /* what is covered, is lost */
         }

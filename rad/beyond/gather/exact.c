@@ -108,7 +108,7 @@ static bool is_open(struct final_gather *g, int32_t number, bool proof)
     int32_t guess = -1;
     view->count = 0;
     bool slender = root.radius * root.radius > SLENDER * root.area;
-    bool open = !slender && view_node(g, &root, NODE_TOP);
+    bool open = !slender && !g->aims->panes && view_node(g, &root, NODE_TOP);
     for (int64_t i = 0; i < view->count && open; i++) {
         struct facet other = facet_make(g->model->forest, view->faced[i]);
         const int32_t own[2] = {root.facet.input, other.input};

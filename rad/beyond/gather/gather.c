@@ -140,6 +140,7 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->aims = alloc_array(1, sizeof *gather->aims);
     gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
     gather->aims->lamps = lamps_create(model, gather->lit);
+    gather->aims->panes = panes_create(model->scene);
     final_gather_renew(gather);
     return gather;
 }
@@ -163,6 +164,9 @@ static void aims_destroy(struct gather_aims *aims)
     regions_destroy(aims->regions);
     cuts_destroy(aims->lamp_cuts);
     cuts_destroy(aims->bright_cuts);
+    cuts_destroy(aims->window_cuts);
+    senders_destroy(aims->windows);
+    panes_destroy(aims->panes);
     alloc_free(aims->bright_part);
     alloc_free(aims->offers);
     alloc_free(aims->shots);
@@ -304,12 +308,23 @@ void final_gather_renew(struct final_gather *gather)
     const struct forest *forest = model->forest;
     struct gather_aims *aims = gather->aims;
     find_bright(aims, model, gather->lit);
+    if (aims->panes) {
+        senders_destroy(aims->windows);
+        panes_look(aims->panes, model->octree, forest);
+        aims->windows = senders_of_panes(model, aims->panes->sent);
+    }
     regions_destroy(aims->regions);
     cuts_destroy(aims->lamp_cuts);
     cuts_destroy(aims->bright_cuts);
+    cuts_destroy(aims->window_cuts);
     aims->regions = regions_create(model);
-    aims->lamp_cuts = cuts_create(aims->lamps, aims->regions, gather->rays);
-    aims->bright_cuts = cuts_create(aims->bright, aims->regions, gather->rays);
+    aims->lamp_cuts =
+        cuts_create(aims->lamps, aims->regions, aims->panes, gather->rays);
+    aims->bright_cuts =
+        cuts_create(aims->bright, aims->regions, aims->panes, gather->rays);
+    if (aims->panes)
+        aims->window_cuts =
+            cuts_create(aims->windows, aims->regions, aims->panes, gather->rays);
     alloc_free(gather->near->leaves);
     struct gather_leaf *leaves = alloc_array((size_t)forest->count, sizeof *leaves);
     gather->near->leaves = leaves;

@@ -6,6 +6,7 @@
  * ray ends far enough away: a path tracer for near surfaces, and radiosity for the rest.
  * In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
  * along all edges of a room. */
+#include "rad/beyond/gather/pane.h"
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
@@ -119,6 +120,8 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)
         light.band[c] *= factor;
+    if (r->gather->aims->panes)
+        receiver_cross(r, pane_walk_to(x, point.at), &light);
     path_go_on(r, point, x, is_aimed_lamp(r, &point, x), light, hash_mix(seed), false);
 }
 
@@ -133,9 +136,58 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     find_leaf(forest, &point);
     if (!path_is_aimed_at(r, &point, x))
         return;
+    struct rgb weight = {{factor, factor, factor}};
     r->bright += factor;
-    path_go_on(r, point, x, root_is_sender(g->aims->lamps, root),
-               (struct rgb){{factor, factor, factor}}, seed, true);
+    if (g->aims->panes)
+        receiver_cross(r, pane_walk_to(point_above(x, r->facet.plane.normal), y),
+                       &weight);
+    path_go_on(r, point, x, root_is_sender(g->aims->lamps, root), weight, seed, true);
+}
+
+/* Adds the light seen from x through the point y of a pane, with this form factor. */
+static void see_through(struct receiver *r, struct vec3 x, struct vec3 y, double factor,
+                        uint64_t seed)
+{
+    struct final_gather *g = r->gather;
+    struct vec3 origin = point_above(x, r->facet.plane.normal);
+    struct vec3 direction = vec3_unit(vec3_sub(y, origin));
+    struct rgb weight = {{factor, factor, factor}};
+    struct point point;
+    enum met met = trace(r, origin, direction, &point);
+    struct pane_walk walk = receiver_walk(r, origin, direction, met, &point);
+    bool lamp = met == MET_FRONT && root_is_sender(g->aims->lamps, point.root);
+    r->bright += factor;
+    if (r->lamps_alone)
+        receiver_filter(r, walk, &weight);
+    else
+        receiver_cross(r, walk, &weight);
+    for (int c = 0; c < BANDS && lamp; c++) {
+        const struct material *m = forest_material(g->model->forest, point.patch);
+        double h = weight.band[c] * m->emission.band[c];
+        r->row->lamps.band[c] += h;
+        r->row->source.band[c] += h;
+        r->light.band[c] += h;
+    }
+    if (met == MET_FRONT && !r->lamps_alone)
+        path_go_on(r, point, y, lamp, weight, seed, true);
+}
+
+void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
+                           struct vec3 x, struct vec3 y, int32_t patch, double factor,
+                           uint64_t seed)
+{
+    struct rgb weight = {{1.0, 1.0, 1.0}};
+    struct pane_walk walk = pane_walk_to(point_above(x, r->facet.plane.normal), y);
+    if (!receiver_may_find(r, walk, senders, patch))
+        return;
+    if (senders->sent) {
+        see_through(r, x, y, factor, seed);
+    } else if (senders->reflect) {
+        receiver_see(r, x, y, patch, factor, seed);
+    } else {
+        receiver_filter(r, walk, &weight);
+        receiver_add_source(r, &weight, sender_light(senders, patch), factor);
+    }
 }
 
 void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
@@ -151,7 +203,10 @@ void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aime
             return;
         if (aims)
             look_beside(r, x, normal, &weight, seed + 10);
-        if (trace(r, x, direction, &point) != MET_FRONT) {
+        enum met met = trace(r, x, direction, &point);
+        if (r->gather->aims->panes)
+            receiver_cross(r, receiver_walk(r, x, direction, met, &point), &weight);
+        if (met != MET_FRONT) {
             r->escaped++;
             return;
         }

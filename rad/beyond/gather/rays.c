@@ -13,6 +13,7 @@
  * patch often enough, and factors of a few of its points would vary without bound.
  *
  * A ray ending too near goes on as a path (path.c). */
+#include "rad/beyond/gather/pane.h"
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
@@ -67,6 +68,16 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         look_again(r, origin, direction);
     else
         r->escaped += met != MET_FRONT;
+    struct pane_walk walk = {.left = 0.0};
+    if (r->gather->aims->panes) {
+        walk = receiver_walk(r, origin, direction, met, &point);
+        if (receiver_puts_aside(r, walk, -1)) {
+            r->sums->aside[half]++;
+            return;
+        }
+        if (met != MET_FRONT)
+            receiver_cross(r, walk, &weight);
+    }
     if (met != MET_FRONT)
         return;
     r->sums->in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
@@ -75,6 +86,8 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         r->sums->aside[half]++;
         return;
     }
+    if (r->gather->aims->panes)
+        receiver_cross(r, walk, &weight);
     bool aimed = root_is_sender(r->gather->aims->lamps, point.root);
     if (path_ends(r, &point, origin)) { /* as most do */
         path_add_mesh(r, &point, aimed, &weight);
@@ -131,9 +144,9 @@ static void add_paths(struct gather_nears *near, const struct receiver *r, doubl
 }
 
 /* Aims at the bright patches, and makes the light of rays, found without these, the light
- * of all other directions, so the row still sums to 1. `source`: of the row before rays
- * were fired. */
-static void add_bright(struct receiver *r, struct rgb source)
+ * of all other directions, so the row still sums to 1. `source`, `begin`: of the row, and
+ * the number of its sums, before rays were fired. */
+static void add_bright(struct receiver *r, struct rgb source, int64_t begin)
 {
     struct final_gather *g = r->gather;
     struct gather_sums *sums = g->sums;
@@ -144,12 +157,13 @@ static void add_bright(struct receiver *r, struct rgb source)
     double rest = fmax(0.0, 1.0 - r->bright) * r->rays;
     double factor = rest / (aside < r->rays ? r->rays - aside : r->rays);
     add_paths(g->near, r, factor);
-    for (int64_t i = 0; i < sums->first; i++)
+    for (int64_t i = begin; i < sums->first; i++)
         for (int c = 0; c < BANDS; c++)
             sums->items[i].weight[c] *= factor;
     for (int c = 0; c < BANDS; c++) {
         r->row->source.band[c] += (factor - 1.0) * (after.band[c] - source.band[c]);
-        r->sums->h.band[c] = factor * r->sums->h.band[c] + r->light.band[c];
+        r->sums->h.band[c] =
+            factor * r->sums->h.band[c] + r->light.band[c] + r->through.band[c];
         r->light.band[c] = 0.0;
     }
 }
@@ -189,6 +203,7 @@ void receiver_fire(struct receiver *r)
     struct rgb source = r->row->source;
     struct stream stream;
     double share = 1.0 / r->rays;
+    int64_t begin = r->gather->sums->first = r->gather->sums->count;
     for (int i = 0; i < r->rays; i++) {
         int half = 2 * i / r->rays, k = i % STREAM_RAYS;
         if (k == 0)
@@ -202,7 +217,7 @@ void receiver_fire(struct receiver *r)
     if (r->sums->inside == r->rays)
         return; /* the only targets would be walls touched by things */
     add_variances(r);
-    add_bright(r, source);
+    add_bright(r, source, begin);
     if (r->escaped < r->rays)
         r->gather->counts.escaped += r->escaped;
 }

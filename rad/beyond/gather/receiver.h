@@ -36,7 +36,9 @@ struct receiver {
     int32_t near;         /* place of the leaf too near met first by the ray at hand; -1:
                              none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
-    double bright;        /* form factor of the bright patches aimed at, 1 */
+    struct rgb through;   /* H by panes aimed at, but for lamps behind, W/m^2 */
+    double bright;        /* form factor of bright patches and panes aimed at, 1 */
+    bool lamps_alone;     /* behind panes light of lamps alone is asked for */
     struct ray_sums *sums; /* borrowed */
 };
 
@@ -52,24 +54,27 @@ void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *wei
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
 
-/* Adds the light of lamps, by segments. */
+/* Adds the light of lamps, by segments, and light behind panes aimed at. */
 void receiver_aim(struct receiver *r);
 
 /* Adds the light of bright patches, by as many segments as a part of its rays. */
 void receiver_aim_at_bright(struct receiver *r);
 
-/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf. */
+/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf, and
+ * of one lamp behind a pane. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed);
-
-/* True if a sender's middle is nearer to a point than the sender's radius: rays from the
- * point find such a sender often enough, and no segments are aimed there. */
-bool point_is_beside(struct vec3 x, const struct triangle *sender);
 
 /* Adds the light of the bright patch at its point y, visible from x, with this form
  * factor; or nothing, if rays from x are not aimed at the patch. */
 void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
                   double factor, uint64_t seed);
+
+/* Adds the light of any sender at its point y, visible from x but for panes, with this
+ * form factor; or nothing, if a pane on the way brings that light. */
+void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
+                           struct vec3 x, struct vec3 y, int32_t patch, double factor,
+                           uint64_t seed);
 
 /* Adds `weight` times the light of a lamp with this form factor. */
 void receiver_add_source(struct receiver *r, const struct rgb *weight,

@@ -101,6 +101,7 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
     struct gather_light light = {.variance = 0.0};
     r.points = points;
+    r.lamps_alone = !all;
     receiver_aim(&r);
     if (all)
         receiver_fire(&r);

@@ -142,8 +142,10 @@ struct gather_aims {
     struct senders *bright;    /* patches reflecting enough to be aimed at */
     double *bright_part;       /* [lit_count()] their part of the light reflected in each
                                   space, 1 */
+    struct panes *panes;       /* NULL: none */
+    struct senders *windows;   /* panes aimed at; NULL: there are no panes */
     struct regions *regions;
-    struct cuts *lamp_cuts, *bright_cuts;
+    struct cuts *lamp_cuts, *bright_cuts, *window_cuts;
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
     struct shot *shots;        /* [shot_capacity] room for those at a sender */
     int64_t offer_capacity, shot_capacity;

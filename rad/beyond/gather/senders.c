@@ -43,6 +43,8 @@ struct bounds bounds_of(const struct model *model, int32_t node)
 struct rgb sender_light(const struct senders *senders, int32_t patch)
 {
     const struct forest *forest = senders->model->forest;
+    if (senders->sent)
+        return senders->sent[patch];
     struct rgb emission = forest_material(forest, patch)->emission;
     return senders->reflect ? rgb_sub(forest->radiosity[patch], emission) : emission;
 }
@@ -75,7 +77,8 @@ static void find_senders(struct building *b, int32_t patch, int32_t part)
     const struct patch *self = &forest->patches[patch];
     double sent = rgb_sum(sender_light(senders, patch)), below = 0.0;
     bool whole = !senders->reflect;
-    if (part < 0 && sent > senders->least[node_space(senders->model, patch)] &&
+    int32_t space = node_space(senders->model, patch);
+    if (part < 0 && sent > (senders->least ? senders->least[space] : 0.0) &&
         (whole || mean_square(senders, patch) <= EVEN * sent * sent))
         part = patch;
     for (int k = 0; k < 4 && !whole && !patch_is_leaf(self); k++) {
@@ -126,15 +129,13 @@ static int32_t add_node(struct building *b, int32_t node)
     return number;
 }
 
-struct senders *senders_create(const struct model *model, double *least, bool reflect)
+/* Fills in the tree. */
+static void build(struct senders *senders)
 {
+    const struct model *model = senders->model;
     const struct cluster_tree *tree = model->clusters->tree;
     size_t patches = (size_t)model->forest->count;
-    struct senders *senders = alloc_array(1, sizeof *senders);
     struct building b = {.senders = senders};
-    senders->model = model;
-    senders->reflect = reflect;
-    senders->least = least;
     b.power = alloc_array(patches, sizeof *b.power);
     b.before = alloc_array((size_t)tree->root_count + 1, sizeof *b.before);
     senders->part_of = alloc_array(patches, sizeof *senders->part_of);
@@ -150,6 +151,21 @@ struct senders *senders_create(const struct model *model, double *least, bool re
         add_node(&b, NODE_TOP);
     alloc_free(b.power);
     alloc_free(b.before);
+}
+
+struct senders *senders_create(const struct model *model, double *least, bool reflect)
+{
+    struct senders *senders = alloc_array(1, sizeof *senders);
+    *senders = (struct senders){.model = model, .reflect = reflect, .least = least};
+    build(senders);
+    return senders;
+}
+
+struct senders *senders_of_panes(const struct model *model, const struct rgb *sent)
+{
+    struct senders *senders = alloc_array(1, sizeof *senders);
+    *senders = (struct senders){.model = model, .sent = sent};
+    build(senders);
     return senders;
 }
 

@@ -4,7 +4,7 @@
  * Senders are the leaves of a tree: the part of the tree of clusters and patches with
  * senders below. A node's senders lie side by side, so a search in an array of sums
  * chooses one by its power. Emitted and reflected light have a tree each, since a picture
- * gathers lamps alone. */
+ * gathers lamps alone; and so have panes, which send the light behind. */
 #ifndef RAD_BEYOND_GATHER_SENDERS_H
 #define RAD_BEYOND_GATHER_SENDERS_H
 
@@ -31,8 +31,9 @@ struct sender_node {
 struct senders {
     const struct model *model; /* borrowed */
     bool reflect;              /* the light sent is reflected; false: emitted */
+    const struct rgb *sent;    /* borrowed, [roots] light of panes; NULL: no panes */
     double *least;             /* [lit_count()] a sender of a space sends more than this,
-                                  over all bands, W/m^2 */
+                                  over all bands, W/m^2; NULL: than 0 */
     struct sender_node *nodes; /* [count] parents first; node 0 is the top */
     int32_t *patches;          /* [sender_count] the senders, in the tree's order */
     double *before;            /* [sender_count + 1] power of those before, over all
@@ -46,6 +47,9 @@ struct senders {
  * roots, or, if `reflect`, the largest patches doing so evenly. Borrows the model, which
  * has clusters and a solution; owns `least`. */
 struct senders *senders_create(const struct model *model, double *least, bool reflect);
+
+/* The panes that send light, which are roots. Borrows `sent`: see struct panes. */
+struct senders *senders_of_panes(const struct model *model, const struct rgb *sent);
 void senders_destroy(struct senders *senders);
 
 /* The power of all senders, over all bands, W in square scene units. */

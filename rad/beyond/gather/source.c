@@ -1,6 +1,6 @@
 /* The light of lamps as a source: what a receiver is given, what stands in the way, and
  * one segment from a point of a path beside it. */
-#include "rad/beyond/gather/receiver.h"
+#include "rad/beyond/gather/pane.h"
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
@@ -52,39 +52,73 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     return blocker_of(r, x, input, y, root);
 }
 
-bool point_is_beside(struct vec3 x, const struct triangle *sender)
+/* Adds the light of the lamp behind a pane that a walk to the pane finds, if segments are
+ * to find it. `share`: the form factor, times the inverse of its probability. */
+static void add_behind_pane(struct receiver *r, struct pane_walk walk,
+                            const struct rgb *weight, double share)
 {
-    struct vec3 apart = vec3_sub(triangle_centroid(sender), x);
-    double radius = triangle_radius(sender);
-    return vec3_dot(apart, apart) < radius * radius;
+    const struct scene *scene = r->gather->model->scene;
+    struct rgb light = *weight;
+    struct point point;
+    enum met met = probe(r, walk.at, walk.direction, &point);
+    if (met != MET_FRONT || !root_is_sender(r->gather->aims->lamps, point.root))
+        return;
+    struct triangle lamp = scene_root_triangle(scene, point.root);
+    if (point_is_beside(walk.at, &lamp))
+        return;
+    receiver_filter(r, pane_walk_to(walk.at, point.at), &light);
+    receiver_add_source(r, &light, scene_root_material(scene, point.root)->emission,
+                        share);
 }
 
-/* The lamp is chosen by the cut of the patch's region, a point of it above the horizon by
- * hashes. */
-void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
-                         int32_t patch, const struct rgb *weight, uint64_t seed)
+/* Aims one segment at a sender chosen by the cut of the patch's region, and at a point of
+ * it above the horizon, by hashes. */
+static void aim_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
+                       struct vec3 normal, int32_t patch, const struct rgb *weight,
+                       uint64_t seed)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     const struct scene *scene = g->model->scene;
     int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
-    struct cut cut = cuts_at(g->aims->lamp_cuts, patch, &g->view->counts);
-    struct choice lamp = cuts_choose(g->aims->lamp_cuts, cut, hash_unit(seed));
-    if (lamp.patch < 0)
+    struct cut cut = cuts_at(cuts, patch, &g->view->counts);
+    struct choice sender = cuts_choose(cuts, cut, hash_unit(seed));
+    if (sender.patch < 0)
         return;
-    struct triangle triangle = scene_root_triangle(scene, lamp.patch);
-    if (point_is_beside(x, &triangle))
+    struct triangle triangle = scene_root_triangle(scene, sender.patch);
+    bool pane = cuts->senders->sent != NULL;
+    if (!pane && point_is_beside(x, &triangle))
         return;
-    struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
-    struct rgb emission = scene_root_material(scene, lamp.patch)->emission;
-    double factor = point_triangle_factor(x, normal, &triangle);
+    struct vec3 facing = scene_root_plane(scene, sender.patch).normal, y;
+    double factor = point_triangle_factor(x, normal, &triangle), kernel = 0.0;
     uint64_t at = seed + 2;
-    for (int k = 0; k < TRIES_MOST && factor > 0.0; k++, at = hash_mix(at)) {
-        struct vec3 y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
-        if (!(point_kernel(x, normal, y, facing) > 0.0))
-            continue;
-        if (blocker_of(r, x, input, y, lamp.patch) < 0)
-            receiver_add_source(r, weight, emission, factor * lamp.share);
-        return;
+    for (int k = 0; k < TRIES_MOST && factor > 0.0 && !(kernel > 0.0);
+         k++, at = hash_mix(at)) {
+        y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
+        kernel = point_kernel(x, normal, y, facing);
     }
+    if (!(kernel > 0.0) || blocker_of(r, x, input, y, sender.patch) >= 0)
+        return;
+    struct rgb light = *weight;
+    if (g->aims->panes) {
+        struct pane_walk walk = pane_walk_to(point_above(x, normal), y);
+        if (!receiver_may_find(r, walk, cuts->senders, sender.patch))
+            return;
+        if (pane) {
+            add_behind_pane(r, walk, weight, factor * sender.share);
+            return;
+        }
+        receiver_filter(r, walk, &light);
+    }
+    receiver_add_source(r, &light, scene_root_material(scene, sender.patch)->emission,
+                        factor * sender.share);
+}
+
+void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                         int32_t patch, const struct rgb *weight, uint64_t seed)
+{
+    const struct gather_aims *aims = r->gather->aims;
+    aim_beside(r, aims->lamp_cuts, x, normal, patch, weight, seed);
+    if (aims->panes)
+        aim_beside(r, aims->window_cuts, x, normal, patch, weight, hash_mix(seed));
 }

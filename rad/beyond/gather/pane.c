@@ -1,0 +1,53 @@
+/* What panes on the way of a ray or a segment do to its light: see rad/beyond/panes.c. */
+#include "rad/beyond/gather/pane.h"
+
+#include <math.h>
+
+struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
+                               struct vec3 direction, enum met met,
+                               const struct point *point)
+{
+    struct model *model = r->gather->model;
+    struct pane_walk walk = {origin, direction, HUGE_VAL, -1};
+    struct octree_hit hit;
+    if (met == MET_FRONT)
+        return pane_walk_to(origin, point->at);
+    if (met == MET_BACK &&
+        octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts)) {
+        const struct plane *plane = &model->scene->planes[hit.triangle];
+        walk.left = -plane_distance(plane, origin) / vec3_dot(plane->normal, direction);
+    }
+    return walk;
+}
+
+bool receiver_puts_aside(struct receiver *r, struct pane_walk walk, int32_t but)
+{
+    struct final_gather *g = r->gather;
+    return panes_put_aside(g->aims->panes, walk, but, &g->model->counts);
+}
+
+bool receiver_may_find(struct receiver *r, struct pane_walk walk,
+                       const struct senders *senders, int32_t sender)
+{
+    if (!senders->sent)
+        return !receiver_puts_aside(r, walk, -1);
+    return pane_is_aimed_at(r->gather->aims->panes, sender, walk.at) &&
+           !receiver_puts_aside(r, walk, sender);
+}
+
+void receiver_filter(struct receiver *r, struct pane_walk walk, struct rgb *weight)
+{
+    panes_filter(r->gather->aims->panes, walk, weight, &r->gather->model->counts);
+}
+
+void receiver_cross(struct receiver *r, struct pane_walk walk, struct rgb *weight)
+{
+    struct final_gather *g = r->gather;
+    while (panes_next(g->aims->panes, &walk, &g->model->counts)) {
+        double at[3];
+        int32_t leaf = pane_leaf(g->model->forest, &walk, at);
+        if (rgb_sum(forest_material(g->model->forest, leaf)->reflectance) > 0.0)
+            receiver_add_point(r, leaf, at, weight);
+        pane_filter(g->model->scene, walk.root, weight);
+    }
+}
