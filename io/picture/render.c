@@ -31,6 +31,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
+#include "rad/beyond/panes.h"
 #include "rad/beyond/sample.h"
 
 enum {
@@ -64,6 +65,7 @@ struct pixel_roots {
     int *whole;           /* rays for a pixel of such points, where all light is gathered;
                              0: light is interpolated; set by show() */
     struct vec3 *at;      /* points, scene units; room for add_light() */
+    struct rgb *through;  /* share of the light that panes let through, 1; NULL: all */
     int count;
 };
 
@@ -130,6 +132,17 @@ static struct plane facade_plane(const struct facade *facade, struct vec3 weight
     return (struct plane){normal, vec3_dot(normal, x)};
 }
 
+/* The sum of the shares let through by panes, over the first `count` entries. */
+static struct rgb sum_of_shares(const struct pixel_roots *view, int count)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    if (!view->through)
+        return (struct rgb){{count, count, count}};
+    for (int i = 0; i < count; i++)
+        rgb_add(&sum, 1.0, view->through[i]);
+    return sum;
+}
+
 /* Adds the light of the first `count` entries, which are of one root and whole alike. */
 static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
                       int count, uint64_t seed, int rays, struct pixel_light *pixel)
@@ -157,6 +170,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
     double rho = 0.0, w[3] = {middle.x, middle.y, middle.z};
     struct rgb other = m->emission, mesh = {{0.0, 0.0, 0.0}};
+    struct rgb seen = sum_of_shares(view, count);
     if (!whole) {
         other = shading_at(shading, shading->values, view->roots[0], w);
         mesh = shading_at(shading, shading->lamps, view->roots[0], w);
@@ -164,9 +178,9 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     for (int c = 0; c < BANDS; c++) {
         double h = light.lamps.band[c] + light.rest.band[c];
         double b = m->reflectance.band[c] * h;
-        pixel->sum.band[c] += count * (other.band[c] + b);
+        pixel->sum.band[c] += seen.band[c] * (other.band[c] + b);
         if (light.by_chance && !whole)
-            pixel->apart.band[c] += count * (b - mesh.band[c]);
+            pixel->apart.band[c] += seen.band[c] * (b - mesh.band[c]);
         rho = fmax(rho, m->reflectance.band[c]);
     }
     pixel->variance += count * count * rho * rho * light.variance;
@@ -182,6 +196,11 @@ static int collect_root(struct pixel_roots *view)
         struct vec3 weight = view->weights[i];
         view->weights[i] = view->weights[count];
         view->weights[count] = weight;
+        if (view->through) {
+            struct rgb through = view->through[i];
+            view->through[i] = view->through[count];
+            view->through[count] = through;
+        }
         view->roots[i] = view->roots[count];
         view->whole[i] = view->whole[count];
         view->whole[count] = view->whole[0];
@@ -211,7 +230,9 @@ static struct rgb show_mesh(const struct shading *shading, const struct pixel_ro
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int i = 0; i < view->count; i++) {
         double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
-        rgb_add(&sum, 1.0, shading_at(shading, shading->values, view->roots[i], w));
+        struct rgb b = shading_at(shading, shading->values, view->roots[i], w);
+        for (int c = 0; c < BANDS; c++)
+            sum.band[c] += (view->through ? view->through[i].band[c] : 1.0) * b.band[c];
     }
     return sum;
 }
@@ -234,6 +255,7 @@ static struct pixel_light show(const struct renderer *renderer,
                   &pixel);
         rest.roots += count;
         rest.weights += count;
+        rest.through = rest.through ? rest.through + count : NULL;
         rest.whole += count;
         rest.count -= count;
     }
@@ -282,7 +304,8 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
 {
     struct vec3 w = {weight[0], weight[1], weight[2]}, at;
     int whole;
-    struct pixel_roots view = {&root, &w, &whole, &at, 1};
+    struct pixel_roots view = {.roots = &root, .weights = &w, .whole = &whole, .at = &at,
+                               .count = 1};
     return show_well(renderer, &view, seed);
 }
 
@@ -293,11 +316,14 @@ struct strip {
     const struct renderer *renderer;
     const struct scene *scene;
     const struct camera *camera;
+    struct panes *panes;     /* NULL: none */
+    struct rgb glare;        /* light of a pixel reflected by panes, W/m^2 */
     struct camera_basis basis;
     struct vec3 eye;         /* of the camera, scene units */
     int samples, rays;       /* along the side of a pixel; in it */
     int pixels;              /* at most */
     struct octree_hit *hits; /* [pixels rays] */
+    struct vec3 *directions; /* [pixels rays] of the rays, if there are panes */
     struct pixel_roots view; /* room for the rays of a pixel */
 };
 
@@ -313,6 +339,8 @@ static void look(struct strip *strip, int px, int py, int pixels)
         double x = px + i / strip->rays + (column + (row + 0.5) / samples) / samples;
         double y = py + (row + (samples - column - 0.5) / samples) / samples;
         directions[filled++] = camera_basis_ray(&strip->basis, x, y);
+        if (strip->panes)
+            strip->directions[i] = directions[filled - 1];
         if (filled < PACKET_RAYS && i + 1 < rays)
             continue;
         octree_first_hits(strip->renderer->octree, strip->eye, directions, filled,
@@ -322,12 +350,36 @@ static void look(struct strip *strip, int px, int py, int pixels)
     }
 }
 
+/* Follows a camera ray across panes up to its hit. Adds the light reflected by panes.
+ * Returns the share of the light from behind. */
+static struct rgb look_through(struct strip *strip, const struct octree_hit *hit,
+                               struct vec3 direction)
+{
+    const struct renderer *renderer = strip->renderer;
+    const struct forest *forest =
+        renderer->gather ? renderer->gather->model->forest : renderer->shading->forest;
+    struct pane_walk walk = {strip->eye, vec3_unit(direction), HUGE_VAL, -1};
+    struct rgb share = {{1.0, 1.0, 1.0}};
+    struct octree_counts counts = {0};
+    if (hit->triangle >= 0)
+        walk = pane_walk_to(strip->eye,
+                            corners_mean(strip->scene->triangles[hit->triangle].corner,
+                                         (struct vec3){hit->weight[0], hit->weight[1],
+                                                       hit->weight[2]}));
+    panes_cross(strip->panes, walk, forest, &share, &strip->glare, &counts);
+    return share;
+}
+
 /* The roots met by the rays of a pixel. */
-static void collect_roots(const struct strip *strip, const struct octree_hit *hits,
+static void collect_roots(struct strip *strip, const struct octree_hit *hits,
                           struct pixel_roots *view)
 {
     view->count = 0;
+    strip->glare = (struct rgb){{0.0, 0.0, 0.0}};
     for (const struct octree_hit *hit = hits; hit < hits + strip->rays; hit++) {
+        if (strip->panes)
+            view->through[view->count] =
+                look_through(strip, hit, strip->directions[hit - strip->hits]);
         if (hit->triangle < 0)
             continue;
         int32_t root = scene_root_on(strip->scene, hit->triangle, hit->front);
@@ -347,6 +399,7 @@ static void render_pixel(struct strip *strip, const struct octree_hit *hits, int
     uint64_t seed = (uint64_t)py * (uint64_t)strip->camera->width + (uint64_t)px;
     collect_roots(strip, hits, &strip->view);
     struct rgb sum = show_well(renderer, &strip->view, seed);
+    rgb_add(&sum, 1.0, strip->glare);
     for (int c = 0; c < BANDS; c++)
         rgb[c] = (float)(sum.band[c] / strip->rays);
 }
@@ -390,6 +443,12 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
                  .whole = alloc_array(rays, sizeof *strip.view.whole),
                  .at = alloc_array(rays, sizeof *strip.view.at)}};
     strip.hits = alloc_array((size_t)strip.pixels * rays, sizeof *strip.hits);
+    strip.panes = renderer->irradiance ? NULL : panes_create(scene);
+    if (strip.panes) {
+        strip.directions =
+            alloc_array((size_t)strip.pixels * rays, sizeof *strip.directions);
+        strip.view.through = alloc_array(rays, sizeof *strip.view.through);
+    }
     int digits = 0, done = 0;
     while (1 << digits < scanlines)
         digits++;
@@ -401,6 +460,9 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
         render_scanline(&strip, first + i * step, rgb + (size_t)i * length);
     }
     alloc_free(strip.hits);
+    alloc_free(strip.directions);
+    panes_destroy(strip.panes);
+    alloc_free(strip.view.through);
     alloc_free(strip.view.roots);
     alloc_free(strip.view.weights);
     alloc_free(strip.view.whole);

@@ -577,8 +577,8 @@ l_duct() { # two arms of 1 x 1 x 3, open at the far end
 
 # --- openings ---
 
-opening() { # THICK Y0 Z0 Y1 Z1 [one]: between a lit room and a dark one of 3 m
-    far=$(of "3 + $1") end=$(of "6 + $1") floor=${6:-two}
+opening() { # THICK Y0 Z0 Y1 Z1 [one [D]]: between a lit room and a dark one of 3 m
+    far=$(of "3 + $1") end=$(of "6 + $1") floor=${6:-two} # on the dark side a pane
     paint dark .7 0
     [ "$floor" = one ] || sheet z 0 + "$far" 0 "$end" 3
     sheet z 3 - "$far" 0 "$end" 3
@@ -600,6 +600,7 @@ opening() { # THICK Y0 Z0 Y1 Z1 [one]: between a lit room and a dark one of 3 m
     sheet y "$4" - 3 "$3" "$far" "$5"
     paint lamp 0 100
     sheet z 3 - 1.2 1.2 1.8 1.8
+    [ $# -lt 7 ] || { paint pane 0 0 "$7" && sheet x "$far" + "$2" "$3" "$4" "$5"; }
 }
 
 furnished_rooms() { # OPEN: two, a wall of 1 cm between; a ninth of it is open
@@ -668,7 +669,24 @@ books() { # WIDER: a row of 24, gaps of 1 to 3 mm or as much wider, boards aroun
     cells 1
 }
 
-window() { # WIDTH HEIGHT: a room of 5 x 4 x 2.7 m, ground and facades below a sky
+two_panes() { # D D: wide, between a shining square and another one
+    paint top .5 0
+    sheet z 1 - 0 0 1 1
+    paint lamp 0 1
+    sheet z 0 + 0 0 1 1
+    paint first 0 0 "$1"
+    sheet z .3 + -9 -9 10 10
+    paint second 0 0 "$2"
+    sheet z .6 - -9 -9 10 10
+}
+furnace_with_pane() { # RHO D: across a closed room in which B is 1
+    paint wall .5 .5
+    room 0 0 0 2 1 1
+    paint pane "$1" 0 "$2"
+    sheet x .9 + 0 0 1 1
+}
+
+window() { # WIDTH HEIGHT [D]: a room of 5 x 4 x 2.7 m, ground and facades below a sky
     x0=$(of "2.5 - $1 / 2") x1=$(of "2.5 + $1 / 2") z1=$(of "1 + $2")
     paint inside .6 0
     sheet z 0 + 0 0 5 4
@@ -688,6 +706,7 @@ window() { # WIDTH HEIGHT: a room of 5 x 4 x 2.7 m, ground and facades below a s
     sheet y 4 + 0 0 5 2.7
     sheet z 2.7 + 0 -.2 5 4
     sheet z -.1 + -10 -14 15 -.2
+    [ $# -lt 3 ] || { paint pane .5 0 "$3" && sheet y 0 + "$x0" 1 "$x1" "$z1"; }
     view .4 3.6 1.6 3 .3 1 65
 }
 

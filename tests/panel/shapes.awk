@@ -1,6 +1,7 @@
 # Shapes, a line each, to OBJ: `awk -f shapes.awk -v name=NAME -v order=K/N`.
 #
-#   paint NAME RHO EMISSION       the faces that follow; a number, or three as r,g,b
+#   paint NAME RHO EMISSION [D]   the faces that follow; a number, or three as r,g,b; with
+#                                 D they are panes
 #   group NAME                    the same, of the paint there is, are another group
 #   cells N                       sheets that follow are N x N of them
 #   quad X Y Z, four times        corners counter-clockwise as seen from the front
@@ -89,7 +90,8 @@ $1 == "cells" { cells = $2 }
 $1 == "paint" {
     painted = grouped = $2
     if (!known[$2]++)
-        materials = materials "newmtl " $2 "\nKd " bands($3) "\nKe " bands($4) "\n"
+        materials = materials "newmtl " $2 "\nKd " bands($3) "\nKe " bands($4) "\n" \
+            (NF > 4 ? "d " $5 "\n" : "")
 }
 $1 == "group" { grouped = $2 }
 $1 == "quad" {
