@@ -35,12 +35,6 @@ static const double VARIES = 10.0;
  * this times the square of its distance. */
 static const double NEAR_SENDER = 0.2;
 
-/* Faces are all but parallel if the cosine between their normals is less. */
-static const double PARALLEL = -0.99;
-
-/* A corner is behind a leaf's plane if it is by more than this part of the radius. */
-static const double BEHIND = 0.01;
-
 /* Most quarterings of a leaf. */
 enum { QUARTERINGS = 3 };
 
@@ -131,29 +125,6 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
         g->view->open = is_open(g, root, true);
     g->view->root = root;
     return g->view;
-}
-
-/* True if the leaf and a sender form a hinge: the sender ends at the leaf's plane, or
- * before, and does not lie opposite the leaf. */
-static bool is_hinge(const struct receiver *r, const struct facet *sender)
-{
-    double lowest = 0.0;
-    for (int k = 0; k < 3; k++)
-        lowest =
-            fmin(lowest, plane_distance(&r->facet.plane, sender->triangle.corner[k]));
-    return vec3_dot(r->facet.plane.normal, sender->plane.normal) > PARALLEL &&
-           lowest >= -BEHIND * triangle_radius(&r->facet.triangle);
-}
-
-/* True if the leaf lies so close on a much larger one that it shades the part in view:
- * this part is darker than the mean of the whole. */
-static bool lies_on(const struct receiver *r, int32_t patch, double factor)
-{
-    const struct forest *forest = r->gather->model->forest;
-    struct facet sender = facet_make(forest, patch);
-    double height = plane_distance(&sender.plane, triangle_centroid(&r->facet.triangle));
-    return factor > 0.25 && sender.area > 4.0 * r->facet.area &&
-           height < 0.25 * triangle_radius(&r->facet.triangle) && !is_hinge(r, &sender);
 }
 
 /* The square of the size of a triangle over the distance to another. */
@@ -289,9 +260,8 @@ static void part_set_steepness(struct sender_part *part, const struct forest *fo
             part->steep[k] = slope->steep;
 }
 
-/* Adds the exact factor to a patch, or to its leaves where B varies. False if the leaf at
- * hand lies on one of these. */
-static bool add_sender(struct receiver *r, int32_t patch)
+/* Adds the exact factor to a patch, or to its leaves where B varies. */
+static void add_sender(struct receiver *r, int32_t patch)
 {
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
@@ -303,7 +273,7 @@ static bool add_sender(struct receiver *r, int32_t patch)
                          .whole = true};
     double factor = factor_to(r, &whole.triangle);
     if (!(factor > 0.0))
-        return true;
+        return;
     uint32_t root = forest->patches[patch].id.root;
     whole.normal = scene_root_plane(forest->scene, (int32_t)root).normal;
     if (patch_is_leaf(&forest->patches[patch])) {
@@ -311,17 +281,13 @@ static bool add_sender(struct receiver *r, int32_t patch)
         if (slope.rise != 0.0)
             part_set_steepness(&whole, forest, &slope);
         add_part(r, &whole, slope.range, factor, QUARTERINGS);
-        return !lies_on(r, patch, factor);
-    }
-    if (!is_to_be_split(r, &whole.triangle, factor,
-                        (double)g->sums->ranges[patch])) {
+    } else if (!is_to_be_split(r, &whole.triangle, factor,
+                               (double)g->sums->ranges[patch])) {
         add_whole(r, &whole, factor);
-        return !lies_on(r, patch, factor);
+    } else {
+        for (int k = 0; k < 4; k++)
+            add_sender(r, forest->patches[patch].children + k);
     }
-    bool good = true;
-    for (int k = 0; k < 4 && good; k++)
-        good = add_sender(r, forest->patches[patch].children + k);
-    return good;
 }
 
 static double sum_of_row(const struct gather_sums *sums)
@@ -369,19 +335,20 @@ bool receiver_add_exact(struct receiver *r)
     const struct forest *forest = g->model->forest;
     uint32_t root = forest->patches[r->row->leaf].id.root;
     const struct gather_view *view = view_of(g, (int32_t)root);
-    bool good = view->open;
+    if (!view->open)
+        return false;
     g->sums->exact = true;
-    for (int turn = 0; turn < 2 && good; turn++) {
+    for (int turn = 0; turn < 2; turn++) {
         double off = fabs(sum_of_row(g->sums) - 1.0);
         if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
             break;
         g->sums->sharp = turn > 0;
         g->sums->count = 0;
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
-        for (int64_t i = 0; i < view->count && good; i++)
-            good = add_sender(r, view->faced[i]);
+        for (int64_t i = 0; i < view->count; i++)
+            add_sender(r, view->faced[i]);
     }
     g->sums->sharp = false;
     g->sums->exact = false;
-    return good && close_row(r);
+    return close_row(r);
 }
