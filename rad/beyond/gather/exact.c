@@ -31,10 +31,6 @@ static const double SLENDER = 64.0;
  * the mean: so errors of senders fall with this root, as those of the mesh do. */
 static const double VARIES = 10.0;
 
-/* The light of a sender is looked at in quarters if the square of its size is more than
- * this times the square of its distance. */
-static const double NEAR_SENDER = 0.2;
-
 /* Most quarterings of a leaf. */
 enum { QUARTERINGS = 3 };
 
@@ -136,28 +132,23 @@ static double nearness(const struct triangle *to, const struct triangle *triangl
 }
 
 /* The mean place of a sender's light on the sender, in barycentric coordinates, by three
- * points, or by three of each quarter of a near sender: else the senders along a tube all
- * err to the same side, and reflection after reflection adds to the error. */
+ * points: else the senders along a tube all err to the same side, and reflection after
+ * reflection adds to the error. */
 static void place_of_light(const struct facet *to, const struct triangle *sender,
                            struct vec3 normal, double w[3])
 {
     const struct triangle at = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
     struct vec3 x[3], y[3], weights[3], sum = {0.0, 0.0, 0.0};
-    int parts = nearness(&to->triangle, sender) > NEAR_SENDER ? 4 : 1;
     double all = 0.0;
     triangle_three_points(&to->triangle, x);
-    for (int part = 0; part < parts; part++) {
-        struct triangle from = parts == 1 ? *sender : triangle_child(sender, part);
-        struct triangle there = parts == 1 ? at : triangle_child(&at, part);
-        triangle_three_points(&from, y);
-        triangle_three_points(&there, weights);
-        for (int k = 0; k < 3; k++) {
-            double light = 0.0;
-            for (int i = 0; i < 3; i++)
-                light += point_kernel(x[i], to->plane.normal, y[k], normal);
-            sum = vec3_add(sum, vec3_scale(weights[k], light));
-            all += light;
-        }
+    triangle_three_points(sender, y);
+    triangle_three_points(&at, weights);
+    for (int k = 0; k < 3; k++) {
+        double light = 0.0;
+        for (int i = 0; i < 3; i++)
+            light += point_kernel(x[i], to->plane.normal, y[k], normal);
+        sum = vec3_add(sum, vec3_scale(weights[k], light));
+        all += light;
     }
     for (int k = 0; k < 3; k++)
         w[k] = all > 0.0 ? vec3_axis(sum, k) / all : 1.0 / 3.0;
@@ -185,7 +176,6 @@ struct sender_part {
     double size;      /* of its edges, those of the patch being 1, times how much steeper
                          B is over the part; below 0 upside down */
     double steep[3];  /* over child k B is steeper by this factor, 1 */
-    bool whole;       /* all of the patch */
 };
 
 /* Towards an edge B is ever steeper, from a child leading up to its own such child. */
@@ -193,7 +183,6 @@ static struct sender_part part_child(const struct sender_part *part, int k)
 {
     struct sender_part child = *part;
     double steep = k == 3 ? 1.0 : part->steep[k];
-    child.whole = false;
     child.triangle = triangle_child(&part->triangle, k);
     child.size = k == 3 ? -0.5 * part->size : 0.5 * part->size;
     for (int j = 0; j < 3 && k < 3; j++)
@@ -212,20 +201,11 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
                                   : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
-/* True if a part is too near, for its size or the leaf's, for three points of the leaf to
- * tell the place of its light. A part is small, so its middle will do. */
-static bool is_near_part(const struct receiver *r, const struct sender_part *part)
-{
-    const struct triangle *to = &r->facet.triangle;
-    return !part->whole && (nearness(to, &part->triangle) > NEAR_SENDER ||
-                            nearness(&part->triangle, to) > NEAR_SENDER);
-}
-
 /* Adds a part whose factor is known as a whole. */
 static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
     double w[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, at[3];
-    if (gather_slope(r->gather, part->patch).rise != 0.0 && !is_near_part(r, part))
+    if (gather_slope(r->gather, part->patch).rise != 0.0)
         place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
@@ -269,8 +249,7 @@ static void add_sender(struct receiver *r, int32_t patch)
                          .triangle = forest_triangle(forest, patch),
                          .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
                          .size = 1.0,
-                         .steep = {1.0, 1.0, 1.0},
-                         .whole = true};
+                         .steep = {1.0, 1.0, 1.0}};
     double factor = factor_to(r, &whole.triangle);
     if (!(factor > 0.0))
         return;
