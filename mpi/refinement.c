@@ -12,7 +12,6 @@
 #include "mpi/migrate.h"
 #include "geom/signals.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -215,11 +214,15 @@ static bool goes_on(struct solver *solver, const struct link_list *prolific, int
     return signals_seen() == 0;
 }
 
-/* Lets a new link not to be split join those that carry light. */
-static void keep_link(struct solver *solver, struct link *link)
+/* Lets a new link not to be split join those that carry light. `divides`: its patches may
+ * get children. */
+static void keep_link(struct solver *solver, struct link *link, bool divides)
 {
-    if (solver->model.method.keep_link)
-        solver->model.method.keep_link(&solver->model, link, true);
+    const struct method *method = &solver->model.method;
+    if (method->keep_link)
+        method->keep_link(&solver->model, link);
+    if (method->divide && divides)
+        method->divide(&solver->model, link);
     link_list_append(&solver->links, *link);
 }
 
@@ -258,8 +261,10 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
             link_list_append(prolific, link);
             continue;
         }
-        if (model->method.keep_link)
-            model->method.keep_link(model, &link, solver->turn.pass == 1);
+        if (model->method.keep_link && solver->turn.pass == 1)
+            model->method.keep_link(model, &link);
+        if (model->method.divide)
+            model->method.divide(model, &link);
         solver->links.items[kept++] = link;
     }
     solver->links.count = solver->turn.settled = kept;
@@ -300,7 +305,7 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
                     link_list_append(&next, children[k]);
                 else
                     /* Add newInteraction to allInteractions */
-                    keep_link(solver, &children[k]);
+                    keep_link(solver, &children[k], true);
             }
         }
         /* prolificInteractions <- newInteractions */
@@ -313,11 +318,8 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
 static void keep_unsplit(struct solver *solver, struct link_list *prolific,
                          struct level *level)
 {
-    double threshold = solver->model.patch_threshold;
-    solver->model.patch_threshold = HUGE_VAL;
     for (int64_t i = 0; goes_on(solver, prolific, i); i++)
-        keep_link(solver, &prolific->items[i]);
-    solver->model.patch_threshold = threshold;
+        keep_link(solver, &prolific->items[i], false);
     exchange_loads(solver, prolific, level);
 }
 

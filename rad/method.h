@@ -53,8 +53,11 @@ struct method {
     int (*split_link)(struct model *model, const struct link *link, int32_t side,
                       struct link *children);
 
-    /* A link, new or not, stays unsplit. NULL: nothing is to be done. */
-    void (*keep_link)(struct model *model, struct link *link, bool is_new);
+    /* A new link stays unsplit. NULL: nothing is to be done. */
+    void (*keep_link)(struct model *model, struct link *link);
+
+    /* Gives patches of an unsplit link children to deal light to. NULL: none. */
+    void (*divide)(struct model *model, const struct link *link);
 
     /* The nodes between which a link carries light. Returns their number. NULL: p and q
      * of the link. */

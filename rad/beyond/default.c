@@ -40,6 +40,7 @@ const struct method DEFAULT = {
     .side_to_split = error_oracle_side_to_split,
     .split_link = node_link_split,
     .keep_link = node_link_keep,
+    .divide = error_oracle_divide,
     .ends = node_link_ends,
     .transfer = node_links_transfer,
 };

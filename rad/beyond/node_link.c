@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "rad/beyond/node_exchange.h"
-#include "rad/beyond/error_oracle.h"
 #include "rad/beyond/patch_link.h"
 
 /* --- looks --- */
@@ -138,14 +137,13 @@ int node_link_split(struct model *model, const struct link *link, int32_t node,
     return count;
 }
 
-void node_link_keep(struct model *model, struct link *link, bool is_new)
+void node_link_keep(struct model *model, struct link *link)
 {
-    if (is_new && link_has_cluster(link)) {
-        struct end p = end_of(model, link->p), q = end_of(model, link->q);
-        struct meeting m = ends_meet(&p, &q);
-        look(model, &m, 1, link);
-    }
-    error_oracle_divide(model, link);
+    if (!link_has_cluster(link))
+        return;
+    struct end p = end_of(model, link->p), q = end_of(model, link->q);
+    struct meeting m = ends_meet(&p, &q);
+    look(model, &m, 1, link);
 }
 
 /* --- transfer ---

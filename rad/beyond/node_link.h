@@ -19,10 +19,9 @@ struct link node_link_top(void);
 int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link *children);
 
-/* Gives the patches of the link children, where the link varies over a patch more than
- * the criterion allows. G of clusters, of a new link, is estimated again, at other
- * points, without the bias of the decision to accept the link. */
-void node_link_keep(struct model *model, struct link *link, bool is_new);
+/* Estimates G of clusters, of a new link, again, at other points, without the bias of the
+ * decision to accept the link. */
+void node_link_keep(struct model *model, struct link *link);
 
 /* The nodes between which a link carries light: see struct method. */
 int node_link_ends(const struct model *model, const struct link *link,

@@ -64,13 +64,13 @@ static int split_and_note(struct model *model, const struct link *link, int32_t 
 }
 
 /* A new link that stays is a child of the last one that was split. */
-static void keep_and_note(struct model *model, struct link *link, bool is_new)
+static void keep_and_note(struct model *model, struct link *link)
 {
     struct record *record = record_of_run;
     int64_t before = model_work(model);
     if (recorded.keep_link)
-        recorded.keep_link(model, link, is_new);
-    if (is_new && record->count > 0)
+        recorded.keep_link(model, link);
+    if (record->count > 0)
         record->splits[record->count - 1].work += model_work(model) - before;
 }
 

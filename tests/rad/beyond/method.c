@@ -14,6 +14,7 @@ static unsigned difference(const struct method *a, const struct method *b)
            (unsigned)(a->side_to_split != b->side_to_split) << 4 |
            (unsigned)(a->split_link != b->split_link) << 5 |
            (unsigned)(a->keep_link != b->keep_link) << 6 |
+           (unsigned)(a->divide != b->divide) << 6 |
            (unsigned)(a->transfer != b->transfer) << 7;
 }
 

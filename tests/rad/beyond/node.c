@@ -338,7 +338,7 @@ static bool has_judgement(struct model *model, struct link *link)
     float area = 0.0f;
     if (!m.near)
         area = (float)node_exchange_estimate(model, &m, 0).unoccluded;
-    node_link_keep(model, link, true);
+    node_link_keep(model, link);
     return memcmp(&area, &link->blocker, sizeof area) == 0;
 }
 
@@ -468,7 +468,7 @@ static void test_symmetry(void)
     int own = 0, even = 0, carrying = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link_list one = {&links.items[i], 1, 1, 1};
-        node_link_keep(model, &links.items[i], true);
+        node_link_keep(model, &links.items[i]);
         if (links.items[i].seen == 0)
             continue;
         double there = product_over(model, &one, 1, 2);
