@@ -35,6 +35,7 @@
 #include "mpi/beyond/spotcheck.h"
 #include "mpi/beyond/step9.h"
 #include "mpi/memory.h"
+#include "rad/beyond/gather/slope.h"
 
 enum { ROUNDS_MOST = 12 };
 

@@ -201,15 +201,24 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
                                   : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
+/* The slope of a patch in an exact row. */
+static struct gather_slope exact_slope(const struct receiver *r, int32_t patch)
+{
+    const struct final_gather *g = r->gather;
+    return slope_of(g->model->forest, g->cut, patch,
+                    &g->lit[node_space(g->model, patch)].scale);
+}
+
 /* Adds a part whose factor is known as a whole. */
 static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
     double w[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, at[3];
-    if (gather_slope(r->gather, part->patch).rise != 0.0)
+    struct gather_slope slope = exact_slope(r, part->patch);
+    if (slope.rise != 0.0)
         place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
-    receiver_add_point(r, part->patch, at, &(struct rgb){{factor, factor, factor}});
+    receiver_add_point(r, part->patch, &slope, at, &(struct rgb){{factor, factor, factor}});
 }
 
 /* Adds the exact factors to a part of a leaf, or to its quarters. */
@@ -256,7 +265,7 @@ static void add_sender(struct receiver *r, int32_t patch)
     uint32_t root = forest->patches[patch].id.root;
     whole.normal = scene_root_plane(forest->scene, (int32_t)root).normal;
     if (patch_is_leaf(&forest->patches[patch])) {
-        struct gather_slope slope = gather_slope(g, patch);
+        struct gather_slope slope = exact_slope(r, patch);
         if (slope.rise != 0.0)
             part_set_steepness(&whole, forest, &slope);
         add_part(r, &whole, slope.range, factor, QUARTERINGS);
@@ -316,7 +325,6 @@ bool receiver_add_exact(struct receiver *r)
     const struct gather_view *view = view_of(g, (int32_t)root);
     if (!view->open)
         return false;
-    g->sums->exact = true;
     for (int turn = 0; turn < 2; turn++) {
         double off = fabs(sum_of_row(g->sums) - 1.0);
         if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
@@ -328,6 +336,5 @@ bool receiver_add_exact(struct receiver *r)
             add_sender(r, view->faced[i]);
     }
     g->sums->sharp = false;
-    g->sums->exact = false;
     return close_row(r);
 }

@@ -1,22 +1,7 @@
 /* The final gather: its rows, kept, and their products with radiosities.
  *
  * A row holds the form factors from a leaf to the leaves in its view, made by rays
- * (rays.c) or, where nothing is in the way, by exact factors (exact.c).
- *
- * As a sender a leaf is no constant: over a leaf with sisters B is linear,
- *
- *     B(x) = b + s sum over k of b_k (w_k - 1/3),    s = 1, of the middle child s = -1,
- *
- * with the barycentric coordinates w of x in the leaf and the means b_0, b_1, b_2 of its
- * parent's outer children: the linear function with these means. (Over the parent itself
- * s is 2.) B(x) is linear in the radiosities, too, so the row has terms for the sisters,
- * which sum to 0. Constants move light outwards at each reflection where leaves are as
- * wide as the gap between them. Where the linear function is below 0 somewhere, its slope
- * is made less.
- *
- * Rejected: B interpolated between shared corners of neighbours. Interpolation needs to
- * know over which edges light goes on smoothly, and at shadows, where interpolation
- * matters, light does not. */
+ * (rays.c) or, where nothing is in the way, by exact factors (exact.c). */
 #include "rad/beyond/gather/gather.h"
 
 #include <math.h>
@@ -26,11 +11,6 @@
 #include "rad/beyond/range.h"
 #include "rad/beyond/gather/receiver.h"
 #include "rad/beyond/sequence.h"
-
-/* Largest ratio of the slope of B over a leaf to the slope over its parent: the square
- * root of the distance from an edge makes 1.41, and links are not right enough there to
- * tell more. */
-static const double STEEPEST = 1.5;
 
 /* A leaf is too near if the square of the length of a ray to it is less than this times
  * the leaf's area. (pi .1 = 1/3: see path_ends().) */
@@ -63,20 +43,6 @@ static int rays_for(int rays, int64_t leaves)
 static bool is_cut(const struct final_gather *gather, int32_t patch)
 {
     return gather->cut && gather->cut[patch];
-}
-
-/* How far apart radiosities are, over all bands; or `scaled`: the largest difference of a
- * band as a part of the band's mean, times the mean over all bands. */
-static double difference(const struct final_gather *g, int32_t patch, struct rgb a,
-                         struct rgb b, bool scaled)
-{
-    const struct rgb *scale = &g->lit[node_space(g->model, patch)].scale;
-    double most = 0.0;
-    if (!scaled)
-        return fabs(rgb_sum(a) - rgb_sum(b));
-    for (int c = 0; c < BANDS; c++)
-        most = real_max(most, scale->band[c] * fabs(a.band[c] - b.band[c]));
-    return most;
 }
 
 /* Leaves too near, of none yet. */
@@ -198,87 +164,6 @@ void final_gather_destroy(struct final_gather *gather)
 
 /* --- rows --- */
 
-/* The factor, at most 1, of a parent's slope that keeps B from falling below 0 over any
- * child, [4] of them. */
-static double slope_part(const struct rgb *b, struct rgb middle)
-{
-    double part = 1.0;
-    for (int c = 0; c < BANDS; c++) {
-        double low = real_min(b[0].band[c], real_min(b[1].band[c], b[2].band[c]));
-        double high = real_max(b[0].band[c], real_max(b[1].band[c], b[2].band[c]));
-        double fall = middle.band[c] - low, rise = high - middle.band[c];
-        if (low < part * fall)
-            part = low / fall;
-        if (b[3].band[c] < part * rise)
-            part = b[3].band[c] / rise;
-    }
-    return part > 0.0 ? part : 0.0;
-}
-
-/* The mean of the outer children of a patch, over all bands; `off`, [3], becomes their
- * differences from this mean. */
-static double outer_mean(const struct forest *forest, int32_t patch, double *off)
-{
-    const struct rgb *b = forest->radiosity + forest->patches[patch].children;
-    double mean = (rgb_sum(b[0]) + rgb_sum(b[1]) + rgb_sum(b[2])) / 3.0;
-    for (int k = 0; k < 3; k++)
-        off[k] = rgb_sum(b[k]) - mean;
-    return mean;
-}
-
-/* To an edge where surfaces meet B rises ever more steeply: the factor by which its slope
- * over the parent of a leaf, along the slope over the grandparent, is more than the
- * latter, if both lead up to the leaf. The slope over the leaf is as much more again, if
- * B stays above 0. */
-static double steepening(const struct forest *forest, int32_t leaf)
-{
-    const struct patch *patches = forest->patches;
-    int32_t parent = patches[leaf].parent, above = patches[parent].parent;
-    int k = leaf - patches[parent].children;
-    int j = above < 0 ? 3 : parent - patches[above].children;
-    double fine[3], wide[3], along = 0.0, square = 0.0, low = 0.0;
-    if (k == 3 || j == 3)
-        return 1.0;
-    double b = outer_mean(forest, parent, fine) + fine[k];
-    outer_mean(forest, above, wide);
-    for (int i = 0; i < 3; i++) {
-        along += 2.0 * fine[i] * wide[i];
-        square += wide[i] * wide[i];
-        low = fmin(low, fine[i]);
-    }
-    if (!(fine[k] > 0.0 && wide[j] > 0.0 && along > square))
-        return 1.0;
-    return fmin(fmin(along / square, STEEPEST), fmax(1.0, b / -low));
-}
-
-struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch)
-{
-    const struct forest *forest = gather->model->forest;
-    const struct patch *patches = forest->patches;
-    bool leaf = patch_is_leaf(&patches[patch]);
-    int32_t parent = leaf ? patches[patch].parent : patch;
-    if (parent < 0)
-        return (struct gather_slope){.rise = 0.0};
-    struct gather_slope slope = {.first = patches[parent].children};
-    if (is_cut(gather, parent))
-        return slope;
-    const struct rgb *b = forest->radiosity + slope.first;
-    struct rgb middle;
-    for (int c = 0; c < BANDS; c++)
-        middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
-    for (int k = 0; k < 3; k++)
-        slope.range = real_max(
-            slope.range, difference(gather, patch, b[k], middle, gather->sums->exact));
-    if (slope.range > 0.0)
-        slope.rise = slope_part(b, middle) *
-                     (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
-    slope.steep = 1.0;
-    if (gather->sums->exact && leaf && slope.rise != 0.0)
-        slope.steep = steepening(forest, patch);
-    slope.rise *= slope.steep;
-    return slope;
-}
-
 static void find_bright(struct gather_aims *aims, const struct model *model,
                         struct lit *lit)
 {
@@ -333,28 +218,8 @@ void final_gather_renew(struct final_gather *gather)
         double reach2 =
             is_cut(gather, p) ? HUGE_VAL : NEAR * forest_area(forest, p);
         leaves[p] = (struct gather_leaf){triangle_centroid(&t), reach2,
-                                         gather_slope(gather, p)};
+                                         slope_of(forest, gather->cut, p, NULL)};
     }
-}
-
-struct rgb light_by_parent(const struct forest *forest, int32_t patch)
-{
-    const struct patch *patches = forest->patches;
-    int32_t parent = patches[patch].parent, grandparent = patches[parent].parent;
-    struct rgb light = forest->radiosity[parent];
-    int k = patch - patches[parent].children;
-    if (grandparent < 0 || k == 3)
-        return light;
-    int32_t first = patches[grandparent].children;
-    double s = parent == first + 3 ? -1.0 : steepening(forest, parent);
-    for (int c = 0; c < BANDS; c++) {
-        for (int j = 0; j < 3; j++) {
-            double w = j == k ? 2.0 / 3.0 : 1.0 / 6.0; /* of the patch's centroid */
-            light.band[c] += s * (w - 1.0 / 3.0) * forest->radiosity[first + j].band[c];
-        }
-        light.band[c] = fmax(0.0, light.band[c]);
-    }
-    return light;
 }
 
 /* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
@@ -384,20 +249,18 @@ void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *wei
         sum->weight[c] += weight->band[c];
 }
 
-void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
+void receiver_add_point(struct receiver *r, int32_t patch,
+                        const struct gather_slope *slope, const double at[3],
                         const struct rgb *weight)
 {
-    const struct final_gather *g = r->gather;
-    struct gather_slope slope =
-        g->sums->exact ? gather_slope(g, patch) : g->near->leaves[patch].slope;
     receiver_add_patch(r, patch, weight);
     struct rgb steep = *weight, part;
     for (int c = 0; c < BANDS; c++)
-        steep.band[c] *= slope.rise;
-    for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
+        steep.band[c] *= slope->rise;
+    for (int k = 0; k < 3 && slope->rise != 0.0; k++) {
         for (int c = 0; c < BANDS; c++)
             part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
-        receiver_add_patch(r, slope.first + k, &part);
+        receiver_add_patch(r, slope->first + k, &part);
     }
 }
 

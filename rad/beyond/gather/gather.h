@@ -75,14 +75,6 @@ int64_t final_gather_terms(const struct final_gather *gather);
 /* Forgets all rows, and leaves too near. */
 void final_gather_drop_rows(struct final_gather *gather);
 
-/* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over an
- * undivided root. */
-struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
-
-/* Returns B of a patch by the linear function over its parent, as steep as in rows at an
- * edge, W/m^2. Pre: the patch has a parent. */
-struct rgb light_by_parent(const struct forest *forest, int32_t patch);
-
 /* The integer of a value in units, bounded. */
 int64_t gather_units(double value, double unit);
 

@@ -14,7 +14,7 @@
  * looked at. In a scene of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
- * over a leaf B is linear, and a leaf where B bends (rad/beyond/gather/bends.c) is split.
+ * over a leaf B is linear, and a leaf where B bends (slope.c) is split.
  * But an undivided root has no parent: where a surface is many small roots, each link to
  * one tells too little to divide the root, and B would be constant over each. So these
  * are looked at, too.
@@ -32,7 +32,6 @@
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "rad/beyond/gather/bends.h"
 #include "rad/beyond/gather/shots.h"
 #include "rad/oracle.h"
 #include "rad/pushpull.h"
@@ -195,7 +194,7 @@ static void split_bent(struct meshing *m)
         int32_t leaf = mesh->leaves[i];
         if (m->open[forest->patches[leaf].id.root])
             split_bent_leaf(
-                m, leaf, gather_splits_of(model, leaf, &sums[node_space(model, leaf)]));
+                m, leaf, slope_splits(model, leaf, &sums[node_space(model, leaf)]));
     }
     alloc_free(sums);
     list_leaves(mesh, forest);

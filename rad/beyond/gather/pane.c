@@ -47,7 +47,7 @@ void receiver_cross(struct receiver *r, struct pane_walk walk, struct rgb *weigh
         double at[3];
         int32_t leaf = pane_leaf(g->model->forest, &walk, at);
         if (rgb_sum(forest_material(g->model->forest, leaf)->reflectance) > 0.0)
-            receiver_add_point(r, leaf, at, weight);
+            receiver_add_point(r, leaf, &g->near->leaves[leaf].slope, at, weight);
         pane_filter(g->model->scene, walk.root, weight);
     }
 }

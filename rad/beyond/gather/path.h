@@ -11,7 +11,8 @@ static inline void path_add_mesh(struct receiver *r, const struct point *point,
 {
     const struct forest *forest = r->gather->model->forest;
     struct rgb emission = forest_material(forest, point->patch)->emission;
-    receiver_add_point(r, point->patch, point->weight, weight);
+    receiver_add_point(r, point->patch, &r->gather->near->leaves[point->patch].slope,
+                       point->weight, weight);
     if (aimed)
         receiver_add_source(r, weight, emission, -1.0);
 }

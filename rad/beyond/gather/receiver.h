@@ -49,9 +49,10 @@ struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
 /* Adds `weight` times the mean radiosity of a patch. */
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);
 
-/* Adds `weight` times the radiosity of a patch at its point with the barycentric
- * coordinates `at`: see gather_slope(). */
-void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
+/* Adds `weight` times the radiosity of a patch with this slope at its point with the
+ * barycentric coordinates `at`. */
+void receiver_add_point(struct receiver *r, int32_t patch,
+                        const struct gather_slope *slope, const double at[3],
                         const struct rgb *weight);
 
 /* Adds the light of lamps, by segments, and light behind panes aimed at. */

@@ -7,6 +7,7 @@
 
 #include "rad/beyond/gather/cuts.h"
 #include "rad/beyond/gather/lit.h"
+#include "rad/beyond/gather/slope.h"
 
 /* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
  * differ from rank to rank, so a patch is named by its place in forest_order(), here as
@@ -28,7 +29,6 @@ struct gather_sums {
     struct gather_sum *items; /* [count] */
     int64_t count, capacity;
     int64_t first;   /* of the sums open to additions */
-    bool exact;      /* the row is made of exact factors */
     bool sharp;      /* factors of near triangles are in closed form */
     float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
                         in the band of the largest range, scaled, W/m^2 */
@@ -71,15 +71,6 @@ struct gather_near {
 struct gather_path {
     int32_t place;    /* of the leaf */
     struct rgb light; /* brought by lamps, times the ray's share of the row, W/m^2 */
-};
-
-/* B as a linear function over a patch: see gather.c. */
-struct gather_slope {
-    int32_t first; /* child 0 of the patch, or of its parent */
-    double rise;   /* s, made less where B would be below 0; 0: B is constant */
-    double steep;  /* slope over a child leading up, over the leaf's slope, 1 */
-    double range;  /* largest difference of B from its value at the centre, over all
-                      bands; in exact rows of one band, as in `ranges`, W/m^2 */
 };
 
 /* A patch as met by rays. */

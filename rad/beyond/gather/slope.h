@@ -1,0 +1,31 @@
+/* B over a patch, linear where the patch has sisters. */
+#ifndef RAD_BEYOND_GATHER_SLOPE_H
+#define RAD_BEYOND_GATHER_SLOPE_H
+
+#include "rad/model.h"
+
+struct gather_slope {
+    int32_t first; /* child 0 of the patch, or of its parent */
+    double rise;   /* s, made less where B would be below 0; 0: B is constant */
+    double steep;  /* slope over a child leading up, over the leaf's slope, 1 */
+    double range;  /* largest difference of B from its value at the centre, over all
+                      bands; in exact rows of one band, scaled, W/m^2 */
+};
+
+/* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over an
+ * undivided root, and where the parent is cut (`cut`: see struct final_gather). `scale`:
+ * factors of bands in exact rows, where B rises ever more to edges; else NULL. */
+struct gather_slope slope_of(const struct forest *forest, const uint8_t *cut,
+                             int32_t patch, const struct rgb *scale);
+
+/* Returns B of a patch by the linear function over its parent, as steep as in exact rows
+ * at an edge, W/m^2. Pre: the patch has a parent. */
+struct rgb light_by_parent(const struct forest *forest, int32_t patch);
+
+/* Returns how many times a leaf with an exact row is to be split: 0, or once if in any
+ * band B bends more over the leaf than allowed, or more often if a level is not enough
+ * for the bend. `all`: the sum of area times the square of reflected radiosity over all
+ * leaves. */
+int slope_splits(const struct model *model, int32_t leaf, const struct rgb *all);
+
+#endif
