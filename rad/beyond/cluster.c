@@ -119,31 +119,23 @@ static int widest_key(const struct member *items, int32_t count, double *mean)
 
 /* --- spaces --- */
 
-/* The least part of an area to make a space worth a cut. */
-static const double SPACE_LEAST = 1.0 / 16.0;
-
 /* Finds the space with the largest part of the items' area, and sets the items' key
- * OTHER_PART. True if the space has not all, but enough for a cut. */
+ * OTHER_PART. True if there are others. */
 static bool find_largest_space(struct cutter *cutter, struct member *items, int32_t count)
 {
-    double sum = 0.0;
     int32_t largest = items[0].space;
-    for (int32_t i = 0; i < count; i++) {
-        double area = scene_root_area(cutter->scene, items[i].root);
-        cutter->share[items[i].space] += area;
-        sum += area;
-    }
+    for (int32_t i = 0; i < count; i++)
+        cutter->share[items[i].space] += scene_root_area(cutter->scene, items[i].root);
     for (int32_t i = 0; i < count; i++)
         if (cutter->share[items[i].space] > cutter->share[largest])
             largest = items[i].space;
-    double share = cutter->share[largest];
     bool has_others = false;
     for (int32_t i = 0; i < count; i++) {
         items[i].key[OTHER_PART] = items[i].space != largest;
         has_others = has_others || items[i].space != largest;
         cutter->share[items[i].space] = 0.0;
     }
-    return has_others && share >= SPACE_LEAST * sum;
+    return has_others;
 }
 
 static double mean_space(const struct member *items, int32_t count)

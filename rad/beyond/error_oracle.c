@@ -108,22 +108,17 @@ static double doubt_of_patches(const struct link *link)
     return (agreed ? 1.0 : 2.0) * DOUBT * link_unoccluded(link);
 }
 
-/* Part of the bound on G in doubt of near ends, one of them a cluster, whatever a look
- * would find: all of G may be in a few pairs of roots; and of far ends, should a look
- * find nothing at all: without this part, errors would end at a floor. */
-static const double DOUBT_NEAR = 0.6, DOUBT_MISSED = 1.0 / 16.0;
-
-/* G in doubt of a link with a cluster: all found without blockers by the first look. By
- * the link's own G, links happening to lack light would stay, and those with too much be
- * split. The G of the first look is kept in place of a blocker, which such a link lacks.
- * (With a quarter and an eighth, as for patches, a room of 18,512 triangles has 5 % fewer
- * links and 15 % more error.) */
+/* G in doubt of a link with a cluster: of near ends, all of the bound, which may be in a
+ * few pairs of roots, whatever a look would find; of far ones, all found without blockers
+ * by the first look, or the part in doubt of patches, should a look find nothing at all:
+ * else errors would end at a floor. By the link's own G, links happening to lack light
+ * would stay, and those with too much be split. The G of the first look is kept in place
+ * of a blocker, which such a link lacks. */
 static double doubt_of_clusters(const struct link *link, const struct meeting *m)
 {
     float judged;
     memcpy(&judged, &link->blocker, sizeof judged);
-    return m->near ? DOUBT_NEAR * m->most
-                   : real_max((double)judged, DOUBT_MISSED * m->most);
+    return m->near ? m->most : real_max((double)judged, DOUBT * m->most);
 }
 
 /* --- sides --- */

@@ -381,7 +381,7 @@ static bool heeds_even_parts(struct model *model, struct link link, int *heard)
     memcpy(&judged, &link.blocker, sizeof judged);
     memset(of_p ? link.parts_p : link.parts_q, 64, sizeof link.parts_p);
     double threshold = model->link_threshold;
-    model->link_threshold = 1.1 * fmax((double)judged, m.most / 16.0) * m.light;
+    model->link_threshold = 1.1 * fmax((double)judged, m.most / 8.0) * m.light;
     bool stays = error_oracle_side_to_split(model, &link) == NODE_NONE;
     model->link_threshold = threshold;
     *dark = kept;
