@@ -94,9 +94,9 @@ static double error_of(const struct model *model, const struct link *link, int32
 /* --- doubt --- */
 
 /* Part of the exchange of two patches in doubt where segments agree, unless the way is
- * open and the patches are far apart; twice as much where segments disagree. Without the
- * latter a half-shade takes 20 times the links (scenes/shadow.obj, 2 %). */
-static const double DOUBT = 0.125;
+ * open and the patches are far apart; where they disagree, as in a half-shade, so many
+ * times as much. */
+static const double DOUBT = 0.125, DISAGREED = 2.0;
 
 /* G in doubt of two patches. */
 static double doubt_of_patches(const struct link *link)
@@ -105,7 +105,7 @@ static double doubt_of_patches(const struct link *link)
                   link->seen == LINK_OPEN_NEAR;
     if (link->seen == LINK_OPEN)
         return 0.0;
-    return (agreed ? 1.0 : 2.0) * DOUBT * link_unoccluded(link);
+    return (agreed ? 1.0 : DISAGREED) * DOUBT * link_unoccluded(link);
 }
 
 /* G in doubt of a link with a cluster: of near ends, all of the bound, which may be in a
