@@ -44,14 +44,11 @@ void conjugate_free(struct conjugate *cg)
 }
 
 /* Row sum times reflectance is the factor of light's growth from bounce to bounce, kept
- * at or below this, or half way from rho to 1 where that is more. A lower limit took
- * light from leaves close to lamps, which have links of many levels; at 0.95 the errors
- * are those without caps. */
-static const double MOST_REFLECTED = 0.95;
-
+ * at or below half way from rho to 1. A lower limit took light from leaves close to lamps,
+ * which have links of many levels. */
 static double cap_of(double reflectance, double row)
 {
-    double most = real_max(MOST_REFLECTED, 0.5 * (1.0 + reflectance));
+    double most = 0.5 * (1.0 + reflectance);
     return reflectance * row > most ? most / (reflectance * row) : 1.0;
 }
 

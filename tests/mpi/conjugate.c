@@ -199,9 +199,8 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
     return worst / largest;
 }
 
-/* By how much the capped row sum R of a leaf times rho exceeds c = max(0.95, (1 + rho) /
- * 2), at most; and by how much a factor differs from min(1, c / (rho R)). Counts capped
- * rows. */
+/* By how much the capped row sum R of a leaf times rho exceeds c = (1 + rho) / 2, at most;
+ * and by how much a factor differs from min(1, c / (rho R)). Counts capped rows. */
 static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX],
                         int64_t *capped)
 {
@@ -217,7 +216,7 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
         for (int j = 0; j < problem->count; j++)
             row += f[i][j];
         double factor = solver->model.forest->caps[leaf];
-        double most = fmax(0.95, 0.5 * (1.0 + largest));
+        double most = 0.5 * (1.0 + largest);
         double wanted = largest * row > most ? most / (largest * row) : 1.0;
         off = fmax(off, fmax(factor * row * largest - most, fabs(factor - wanted)));
         *capped += factor < 1.0;
