@@ -1,17 +1,16 @@
 /* Means of light over spaces, and what is a lamp there.
  *
- * A lamp emits more than GLOW times the mean radiosity, if surfaces doing so are LAMP
- * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces
- * are as bright, as in a furnace, there is no lamp. Where little is reflected,
- * BRIGHT times the mean reflected light is enough; a bright patch reflects more than
- * this. Where no more than FEW of the surface emits, all emitters are lamps. */
+ * All emitters are lamps if they are LAMP times as bright as the mean of all surfaces. If
+ * not, a lamp emits more than LAMP times this mean: where all surfaces are as bright, as in
+ * a furnace, there is no lamp. Where little is reflected, BRIGHT times the mean reflected
+ * light is enough; a bright patch reflects more than this. */
 #include "rad/beyond/gather/lit.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 
-static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0, FEW = 0.05;
+static const double LAMP = 1.1, BRIGHT = 4.0;
 
 static int32_t space_of(const struct model *model, int32_t root)
 {
@@ -58,37 +57,28 @@ void lit_renew(struct lit *lit, const struct model *model)
     }
 }
 
-/* The surfaces of a space emitting more than GLOW times its mean radiosity, and more than
- * 0. */
+/* The emitting surfaces of a space. */
 struct emitters {
-    double area, glowing; /* square scene units */
-    double mean;          /* radiosity of the glowing, over bands, W/m^2 */
+    double area;  /* square scene units */
+    double power; /* area times radiosity, over bands */
 };
 
-static void find_emitters(struct emitters *all, const struct model *model,
-                          const struct lit *lit)
+static void find_emitters(struct emitters *all, const struct model *model)
 {
     for (int32_t root = 0; root < scene_root_count(model->scene); root++) {
-        int32_t s = space_of(model, root);
+        struct emitters *own = &all[space_of(model, root)];
         double area = scene_root_area(model->scene, root);
-        double emitted = rgb_sum(scene_root_material(model->scene, root)->emission);
-        if (emitted > 0.0)
-            all[s].area += area;
-        if (!(emitted > GLOW * lit[s].mean))
+        if (!material_emits(scene_root_material(model->scene, root)))
             continue;
-        all[s].glowing += area;
-        all[s].mean += area * rgb_sum(model->forest->radiosity[root]);
+        own->area += area;
+        own->power += area * rgb_sum(model->forest->radiosity[root]);
     }
-    for (int32_t s = 0; s < lit_count(model); s++)
-        all[s].mean /= all[s].glowing > 0.0 ? all[s].glowing : 1.0;
 }
 
 static double least_of_lamps(const struct emitters *all, const struct lit *lit)
 {
-    if (all->area <= FEW * lit->area)
-        return 0.0;
-    bool glow = all->mean > LAMP * lit->mean;
-    return fmin((glow ? GLOW : LAMP) * lit->mean, lit->bright_least);
+    double most = LAMP * lit->mean;
+    return fmin(all->power > most * all->area ? 0.0 : most, lit->bright_least);
 }
 
 struct lit *lit_find(const struct model *model)
@@ -97,7 +87,7 @@ struct lit *lit_find(const struct model *model)
     find_means(lit, model);
     lit_renew(lit, model);
     struct emitters *all = alloc_array((size_t)lit_count(model), sizeof *all);
-    find_emitters(all, model, lit);
+    find_emitters(all, model);
     for (int32_t s = 0; s < lit_count(model); s++)
         lit[s].lamp_least = least_of_lamps(&all[s], &lit[s]);
     alloc_free(all);
