@@ -71,6 +71,35 @@ for test in $course/exercises/*-test.c; do
         [ "$(lines '^not ok' "$work/open")" -eq "$asked" ]
 done
 
+# --- check ---
+
+check "chapter 2 has sixteen pairs" [ "$($course/check 2 | grep -c '^[A-Z]')" -eq 17 ]
+# checked N TEXT: status 1, and the text.
+checked() {
+    $course/check "$1" "$work/mine" >"$work/out"
+    [ $? -eq 1 ] && grep -qF "$2" "$work/out"
+}
+passes() { $course/check "$1" "$work/mine" >"$work/out"; }
+awk -F, '{ print $1 "," $3 }' build/course/check.cases >"$work/mine"
+check "right factors pass" passes 2
+build/oracle/hemicube build/course/check.cases area >"$work/mine"
+check "A_i for A_j is named" checked 2 "likeliest slip: A_i for A_j"
+build/oracle/hemicube build/course/check.cases pi >"$work/mine"
+check "and pi" checked 2 "likeliest slip: pi missing"
+printf 'E02,1.5\n' >"$work/mine"
+check "and a row above 1" checked 2 "likeliest slip: a row above 1"
+build/course/pushpull | awk 'NR > 1 { print "7-" $1 "," $NF }' |
+    grep -E '/(|0|3|30|32),' >"$work/mine"
+check "push and pull pass" passes 7
+sed -e 's/^7-0.,.*/7-0\/,15.8/' -e 's/^7-0.3,.*/7-0\/3,12.8/' "$work/mine" >"$work/sum"
+mv "$work/sum" "$work/mine"
+check "a pull that sums is named" checked 7 "likeliest slip: children summed"
+build/course/plan 10 2 6 2 | awk '{ print "9-" $2 ">" $NF "," $4 }
+    END { print "9-imbalance,2" }' >"$work/mine"
+check "the greedy plan passes" passes 9
+sed -i.old '$d' "$work/mine"
+check "a number is missing" checked 9 "not all are there"
+
 # --- names ---
 
 gone=$(grep -ohE '`--[a-z-]+`' $course/*.md | tr -d '`' | sort -u |

@@ -279,12 +279,12 @@ static void print_first_wrong(const struct score *score)
     for (int64_t i = 0; i < score->count; i++) {
         const struct given *given = &score->given[i];
         const struct known_case *known = given->known;
+        bool unit = strcmp(known->unit, "1") != 0;
         if (!given->wrong)
             continue;
-        printf("first wrong: %s, %s: %.9g where %.9g %s is right (%s; %s)\n", known->id,
-               known->what, given->value, known->right,
-               strcmp(known->unit, "1") == 0 ? "" : known->unit, known->formula,
-               known->source);
+        printf("first wrong: %s, %s: %.9g, right is %.9g%s%s (%s; %s)\n", known->id,
+               known->what, given->value, known->right, unit ? " " : "",
+               unit ? known->unit : "", known->formula, known->source);
         return;
     }
 }
