@@ -93,7 +93,7 @@ void account_free(struct account *account)
         alloc_free(ledger->levels[i].shares);
     alloc_free(ledger->items);
     alloc_free(ledger->levels);
-    alloc_free(account->proxies);
+    alloc_free(account->each);
 }
 
 /* Most bytes ever held by this process, 0 where the system does not tell. */
@@ -117,9 +117,8 @@ static void report_counts(const struct account *own, const struct comm *comm,
 {
     const struct octree_counts *counts = &model->counts;
     int64_t sum[] = {counts->rays, counts->node_tests, counts->triangle_tests,
-                     model->walled_off, model->rays_spared, peak_memory()};
+                     model->walled_off, model->rays_spared};
     stats->messages = (int64_t)comm_largest(comm, (double)comm_counts().messages);
-    stats->peak_rss_bytes = (int64_t)comm_largest(comm, (double)sum[5]);
     for (int k = 0; k < CARGO_COUNT; k++)
         stats->messages_with[k] = (int64_t)comm_largest(comm, (double)own->messages[k]);
     memcpy(stats->bytes_of, own->bytes, sizeof stats->bytes_of);
@@ -136,7 +135,6 @@ static void report_counts(const struct account *own, const struct comm *comm,
     stats->triangle_tests = sum[2];
     stats->walled_off = sum[3];
     stats->rays_spared = sum[4];
-    stats->peak_rss_bytes_sum = sum[5];
 }
 
 void account_report(struct account *account, const struct comm *comm,
@@ -148,9 +146,10 @@ void account_report(struct account *account, const struct comm *comm,
     stats->level_count = account->ledger.level_count;
     memcpy(stats->work, account->ledger.sums, sizeof stats->work);
     stats->exchanges = comm_counts().collectives;
-    alloc_free(account->proxies);
-    account->proxies = comm_gather_each(comm, &account->held, sizeof *account->proxies);
-    stats->proxies = account->proxies;
+    account->own.memory = peak_memory();
+    alloc_free(account->each);
+    account->each = comm_gather_each(comm, &account->own, sizeof *account->each);
+    stats->holdings = account->each;
     report_counts(account, comm, model, links, stats);
     double *all = comm_gather_each(comm, account->seconds, sizeof account->seconds);
     for (int phase = 0; phase < PHASE_COUNT; phase++) {

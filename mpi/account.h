@@ -38,9 +38,9 @@ struct account {
     int64_t copied;          /* patch records packed or unpacked */
     int64_t recorded[3];     /* of the last three, in the ledger */
     int64_t leaves;          /* at home here, in the last push-pull */
-    int64_t held;            /* proxies of this rank */
+    struct holdings own;     /* of this rank */
     struct ledger ledger;
-    int64_t *proxies;        /* [ranks] see struct stats */
+    struct holdings *each;   /* [ranks] of all, once reported */
 };
 
 /* Starts and stops the clock of a phase, which gains the seconds in between. */

@@ -163,6 +163,7 @@ void homes_renew(struct solver *solver)
         RESERVE(homes->patches, &homes->capacity, homes->count + 1);
         homes->patches[homes->count++] = (int32_t)homes->listed;
     }
+    solver->account.own.patches = homes->count;
 }
 
 void solver_deal_roots(struct solver *solver, int *owner)

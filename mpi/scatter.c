@@ -162,7 +162,7 @@ static bool is_new(struct solver *solver, int32_t node, int32_t mark)
 void routes_renew(struct solver *solver)
 {
     const struct model *model = &solver->model;
-    struct link_list *links = &solver->links;
+    const struct link_list *links = &solver->links;
     int64_t count = 0, all = model->forest->count + solver->memory.clusters;
     int32_t *wanted = alloc_array((size_t)all, sizeof *wanted);
     for (int64_t i = 0; i < links->seen && solver->comm->size > 1; i++) {
@@ -179,7 +179,7 @@ void routes_renew(struct solver *solver)
     routes_carry(solver, &own, &asked, LIGHT);
     route_extend(&solver->routes.proxies, &asked, solver->comm->size);
     route_extend(&solver->routes.originals, &own, solver->comm->size);
-    solver->account.held = solver->routes.proxies.count;
+    solver->account.own.proxies = solver->routes.proxies.count;
     route_free(&own);
     route_free(&asked);
     alloc_free(wanted);
@@ -196,8 +196,8 @@ static int32_t origin_of(const struct solver *solver, int32_t p)
 /* Appends a node and, if `deep`, its children to a list. Returns their number. */
 static int name_family(const struct model *model, int32_t node, bool deep, int32_t *list)
 {
-    int count = 0;
-    list[count++] = node;
+    int count = 1;
+    list[0] = node;
     for (int k = 0; k < 4 && deep; k++) {
         list[count] = model->method.node_child(model, node, k);
         count += list[count] != NODE_NONE;

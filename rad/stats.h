@@ -64,6 +64,14 @@ enum work {
     WORK_COUNT
 };
 
+/* What a rank holds. */
+struct holdings {
+    int64_t patches; /* at home there */
+    int64_t proxies; /* patches and clusters of other homes between which its links carry
+                        light, or did */
+    int64_t memory;  /* most bytes ever held, with what ranks share; 0: unknown */
+};
+
 /* What travels between ranks. */
 enum cargo {
     CARGO_LINKS, /* moving, in steps 3 and 4 */
@@ -145,8 +153,7 @@ struct stats {
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
-    int64_t *proxies; /* [ranks] borrowed: patches and clusters of other homes between
-                         which links of the rank carry light, or did */
+    struct holdings *holdings;    /* [ranks] borrowed */
     int64_t bytes_of[CARGO_COUNT]; /* of all ranks */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
@@ -154,8 +161,6 @@ struct stats {
                           rank */
     int64_t messages_with[CARGO_COUNT]; /* of these */
     int64_t bytes_broadcast;    /* scene, octree and tree, one copy */
-    int64_t peak_rss_bytes;     /* largest over ranks; 0 if unknown */
-    int64_t peak_rss_bytes_sum; /* sum over ranks; shared memory counts for each */
 };
 
 #endif

@@ -1,6 +1,6 @@
 /* Reporting a run. Keys of the JSON stand in one order, one a line, for comparison with
- * diff. Times and memory depend on the machine; "balance", "proxies", "work",
- * "exchanges", "messages" and "bytes" depend on the number of ranks alone. */
+ * diff. Times and memory depend on the machine; "balance", "proxies", "patches_at_home",
+ * "work", "exchanges", "messages" and "bytes" depend on the number of ranks alone. */
 #include "io/run/stats.h"
 
 #include <inttypes.h>
@@ -195,10 +195,22 @@ static void write_balance(FILE *file, const struct stats *stats)
         fputc('}', file);
     }
     fprintf(file, "%s],\n", stats->level_count ? "\n  " : "");
-    fprintf(file, "  \"proxies\": [");
-    for (int64_t r = 0; r < stats->ranks; r++)
-        fprintf(file, "%s%" PRId64, r ? ", " : "", stats->proxies[r]);
-    fprintf(file, "],\n");
+}
+
+/* Writes what each rank holds, one list a field. */
+static void write_holdings(FILE *file, const struct stats *stats)
+{
+    static const char *const NAMES[] = {"proxies", "patches_at_home",
+                                        "peak_rss_bytes_each"};
+    for (size_t field = 0; field < sizeof NAMES / sizeof *NAMES; field++) {
+        fprintf(file, "  \"%s\": [", NAMES[field]);
+        for (int64_t r = 0; r < stats->ranks; r++) {
+            const struct holdings *own = &stats->holdings[r];
+            const int64_t fields[] = {own->proxies, own->patches, own->memory};
+            fprintf(file, "%s%" PRId64, r ? ", " : "", fields[field]);
+        }
+        fprintf(file, "],\n");
+    }
 }
 
 static void write_work(FILE *file, const struct stats *stats)
@@ -231,6 +243,7 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     write_counts(output.file, stats);
     write_seconds(output.file, stats);
     write_balance(output.file, stats);
+    write_holdings(output.file, stats);
     write_work(output.file, stats);
     fprintf(output.file,
             "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64
@@ -239,8 +252,13 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
             stats->bytes_of[CARGO_LINKS], stats->bytes_of[CARGO_FLUX],
             stats->bytes_of[CARGO_LIGHT], stats->bytes_of[CARGO_WHOLE],
             stats->bytes_broadcast);
-    write_integer(output.file, "peak_rss_bytes", stats->peak_rss_bytes);
-    fprintf(output.file, "  \"peak_rss_bytes_sum\": %" PRId64 "\n}\n",
-            stats->peak_rss_bytes_sum);
+    int64_t most = 0, sum = 0;
+    for (int64_t r = 0; r < stats->ranks; r++) {
+        int64_t own = stats->holdings[r].memory;
+        most = own > most ? own : most;
+        sum += own;
+    }
+    write_integer(output.file, "peak_rss_bytes", most);
+    fprintf(output.file, "  \"peak_rss_bytes_sum\": %" PRId64 "\n}\n", sum);
     return output_close(&output, error);
 }

@@ -177,8 +177,8 @@ static void test_balance(const struct comm *comm)
         worst = fmax(worst, level->predicted_max / level->predicted_mean);
     }
     for (int r = 0; r < comm->size; r++)
-        proxies = proxies && (s.stats.proxies[r] > 0) == (comm->size > 1);
-    int64_t found = find_proxies(s.solver), told = s.stats.proxies[comm->rank];
+        proxies = proxies && (s.stats.holdings[r].proxies > 0) == (comm->size > 1);
+    int64_t found = find_proxies(s.solver), told = s.stats.holdings[comm->rank].proxies;
     int64_t wrong = told < found || told > found + found / 8; /* a proxy stays one */
     comm_add(comm, &wrong, 1);
     if (comm->rank == 0) {
