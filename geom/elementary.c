@@ -1,4 +1,5 @@
-/* Arctangent by a table of nine angles, logarithm by the area tangent.
+/* Arctangent by a table of nine angles, logarithm by the area tangent, exponential by its
+ * series.
  *
  * Arctangent. The point is turned into the first octant, where t = min / max is in [0,
  * 1]. With c = k / 8 the number nearest to t,
@@ -17,6 +18,9 @@
  * s^23 is the first power left out, 1e-18 of s. So that the rounding of s does not count,
  * 2 s is written as f - (f^2/2 - s f^2/2): the series then only corrects f. e ln 2 is
  * added in two parts, of which the first has zeros at its end and is exact for every e.
+ *
+ * Exponential. With x = k ln 2 + r, |r| <= ln 2 / 2, e^x is 2^k times the Taylor series
+ * of e^r to r^17, which leaves out 1e-24.
  *
  * Rejected: libm, whose last bits differ between systems; rational or minimax
  * coefficients, which save two products and have to be believed, while these series can
@@ -76,10 +80,12 @@ static double artanh_tail(double w)
     return w * sum;
 }
 
+/* ln 2; the first part has zeros at its end. */
+static const double LN2_HIGH = 0.6931471803691238, LN2_LOW = 1.9082149292705877e-10;
+
 double logarithm(double x)
 {
     static const double SQRT_HALF = 0.70710678118654752440;
-    static const double LN2_HIGH = 0.6931471803691238, LN2_LOW = 1.9082149292705877e-10;
     int exponent;
     double m = frexp(x, &exponent);
     if (m < SQRT_HALF) {
@@ -89,4 +95,13 @@ double logarithm(double x)
     double f = m - 1.0, s = f / (2.0 + f), half = 0.5 * f * f;
     double correction = half - s * (half + artanh_tail(s * s));
     return exponent * LN2_HIGH + (f - (correction - exponent * LN2_LOW));
+}
+
+double exponential(double x)
+{
+    int k = (int)(x / (LN2_HIGH + LN2_LOW) + (x < 0.0 ? -0.5 : 0.5));
+    double r = x - k * LN2_HIGH - k * LN2_LOW, sum = 0.0;
+    for (int n = 17; n >= 1; n--)
+        sum = (1.0 + sum) * r / n;
+    return ldexp(1.0 + sum, k);
 }

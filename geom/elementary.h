@@ -1,8 +1,8 @@
-/* Arctangent and logarithm, with the same bits on every machine.
+/* Arctangent, logarithm and exponential, with the same bits on every machine.
  *
- * C leaves the last bit of atan2() and log() to the library, and libraries differ. These
- * two use + - * / and exact scaling only, so their results are as reproducible as those
- * of geom/vec.h. Both are right within 4.5e-16 of the result, relative: two units in the
+ * C leaves the last bit of atan2(), log() and exp() to the library, and libraries differ.
+ * These use + - * / and exact scaling only, so their results are as reproducible as those
+ * of geom/vec.h. They are right within 4.5e-16 of the result, relative: two units in the
  * last place. */
 #ifndef GEOM_ELEMENTARY_H
 #define GEOM_ELEMENTARY_H
@@ -13,5 +13,8 @@ double arctangent(double y, double x);
 
 /* Natural logarithm. Pre: x is finite and above 0 (subnormal numbers included). */
 double logarithm(double x);
+
+/* e to the power x. Pre: -700 <= x <= 700. */
+double exponential(double x);
 
 #endif

@@ -11,6 +11,7 @@
 #include "geom/alloc.h"
 #include "geom/doubles.h"
 #include "geom/hash.h"
+#include "geom/lambert.h"
 
 static const double CLAMPED_REFLECTANCE = 0.999;
 
@@ -53,7 +54,8 @@ void scene_add_normals(struct scene *scene)
     ((array) = alloc_resize(array, (size_t)(count) + (size_t)(more), sizeof *(array)), \
      memset((array) + (count), 0, (size_t)(more) * sizeof *(array)))
 
-void scene_add_sky(struct scene *scene, int32_t count, struct material material)
+void scene_add_sky(struct scene *scene, int32_t count, const struct triangle *triangles,
+                   const struct rgb *radiosities)
 {
     int64_t before = scene->input_count;
     EXTEND(scene->triangles, before, count);
@@ -65,8 +67,15 @@ void scene_add_sky(struct scene *scene, int32_t count, struct material material)
     EXTEND(scene->groups.of, before, count);
     if (scene->normals)
         EXTEND(scene->normals, 3 * before, 3 * count);
-    EXTEND(scene->materials, scene->material_count, 1);
-    scene->materials[scene->material_count++] = material;
+    EXTEND(scene->materials, scene->material_count, count);
+    for (int32_t i = 0; i < count; i++) {
+        struct material material = {.emission = radiosities[i]};
+        if (i == 0 ||
+            !material_is_same(&material, &scene->materials[scene->material_count - 1]))
+            scene->materials[scene->material_count++] = material;
+        scene->triangles[before + i] = triangles[i];
+        scene->material_of[before + i] = scene->material_count - 1;
+    }
     scene->input_count += count;
 }
 
@@ -419,29 +428,33 @@ double scene_own_area(const struct scene *scene)
     return sum;
 }
 
-/* A uniform sky lights the top of the box like a half space, and the sides like a
- * quarter: half as much. The sky shines down along y or z, whichever is the axis of its
- * largest sum of normals. */
+/* Light of a sky enters by the front of the sides of the box: what the middle of the box
+ * receives on a face towards each of them is what all of the side does. */
 double scene_entering_power(const struct scene *scene)
 {
-    struct vec3 low = scene->triangles[0].corner[0], high = low, down = {0.0, 0.0, 0.0};
-    double sky = 0.0;
+    double power = 0.0;
+    struct vec3 low = scene->triangles[0].corner[0], high = low;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        power += scene_root_own_area(scene, root) *
+                 rgb_sum(scene_root_material(scene, root)->emission);
     for (int32_t i = 0; i < scene->sky_first; i++) {
         low = vec3_least(low, triangle_low(&scene->triangles[i]));
         high = vec3_most(high, triangle_high(&scene->triangles[i]));
     }
+    struct vec3 middle = vec3_middle(low, high), side = vec3_sub(high, low);
     for (int32_t i = scene->sky_first; i < scene->input_count; i++) {
-        down = vec3_add(down, vec3_scale(scene->planes[i].normal, scene->areas[i]));
-        sky += scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
+        double light = rgb_sum(scene_root_material(scene, i)->emission);
+        for (int face = 0; face < 6; face++) {
+            double sign = face % 2 ? -1.0 : 1.0;
+            struct vec3 out = {face / 2 == 0 ? sign : 0.0, face / 2 == 1 ? sign : 0.0,
+                               face / 2 == 2 ? sign : 0.0};
+            double area = vec3_axis(side, (face / 2 + 1) % 3) *
+                          vec3_axis(side, (face / 2 + 2) % 3);
+            power += light * area *
+                     point_triangle_factor(middle, out, &scene->triangles[i]);
+        }
     }
-    if (!(sky > 0.0))
-        return scene_emitted_power(scene);
-    struct vec3 side = vec3_sub(high, low);
-    double faces[] = {side.y * side.z, side.z * side.x, side.x * side.y};
-    int up = -down.z > -down.y ? 2 : 1;
-    double shown = faces[up] + faces[(up + 1) % 3] + faces[(up + 2) % 3];
-    double b = rgb_sum(scene_root_material(scene, scene->sky_first)->emission);
-    return scene_emitted_power(scene) - sky + b * shown;
+    return power;
 }
 
 double scene_area_unit(const struct scene *scene)

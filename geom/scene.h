@@ -114,8 +114,10 @@ void scene_add_normals(struct scene *scene);
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 
-/* Makes room for a sky of `count` triangles, to be set, of a material of its own. */
-void scene_add_sky(struct scene *scene, int32_t count, struct material material);
+/* Adds a sky of `count` triangles that emit these radiosities, W/m^2, and reflect
+ * nothing; triangles beside each other of one radiosity share a material. */
+void scene_add_sky(struct scene *scene, int32_t count, const struct triangle *triangles,
+                   const struct rgb *radiosities);
 
 /* Takes the emissions for radiances, W/m^2/sr, of which radiosities are made. */
 void scene_take_radiances(struct scene *scene);

@@ -27,6 +27,14 @@ static inline struct scene *ply_read(struct source *source, struct error *error)
     return scene;
 }
 
+/* Adds a uniform sky of this radiosity, W/m^2. */
+static inline void add_uniform_sky(struct scene *scene, double radiosity)
+{
+    struct sky sky = {.kind = SKY_UNIFORM, .level = {{radiosity, radiosity, radiosity}}};
+    struct error error = {0};
+    sky_add(scene, &sky, &error);
+}
+
 /* A file, and what is asked of its scene. */
 struct reading {
     const char *path;
@@ -45,7 +53,7 @@ static inline struct scene *scene_read(struct reading reading, struct error *err
     if (reading.radiances)
         scene_take_radiances(scene);
     if (reading.sky > 0.0)
-        sky_add(scene, (struct rgb){{reading.sky, reading.sky, reading.sky}});
+        add_uniform_sky(scene, reading.sky);
     scene->two_sided = reading.two_sided;
     scene->two_sided_lamps = reading.two_sided_lamps;
     if (scene_prepare(scene, &repairs, error))

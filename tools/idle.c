@@ -21,7 +21,8 @@ static const char *const LIGHT[] = {
 static const char *const PREDICTION[] = {"--alpha", NULL};
 static const char *const GATHER[] = {"--final-gather", NULL};
 static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
-                                      "--sky", "--two-sided", "--two-sided-lamps", NULL};
+                                      "--sky", "--sun", "--two-sided",
+                                      "--two-sided-lamps", NULL};
 static const char *const METHOD[] = {"--oracle", "--linking", "--form-factor",
                                      "--solver", "--balance", NULL};
 

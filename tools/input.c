@@ -190,12 +190,18 @@ void input_say_up(struct run *run)
     run->up_reason = NULL;
 }
 
-/* Adds the sky asked for, or one to make a scene without lamps visible. */
-static void add_sky(struct run *run)
+/* Adds the sky asked for, or one in place of a dome, of `*faces` faces, or one to make a
+ * scene without lamps visible. */
+static bool add_sky(struct run *run, int32_t *faces)
 {
     struct scene *scene = run->scene;
-    struct rgb *sky = &run->options.sky;
-    bool emits = rgb_sum(*sky) > 0.0, reflects = false;
+    struct sky *sky = &run->options.sky;
+    *faces = sky->kind == SKY_NONE ? sky_of_dome(scene, sky) : 0;
+    if (*faces > 0)
+        run_say(run, "%s: lamps all around, of %g,%g,%g W/m^2, are taken as a sky: as "
+                     "--sky", run->options.scene, sky->level.band[0],
+                sky->level.band[1], sky->level.band[2]);
+    bool emits = sky->kind != SKY_NONE || sky->sun_irradiance > 0.0, reflects = false;
     for (int32_t i = 0; i < scene->input_count && !(emits && reflects); i++) {
         emits = emits || material_emits(scene_root_material(scene, i));
         reflects = reflects || rgb_sum(scene_root_material(scene, i)->reflectance) > 0.0;
@@ -204,12 +210,14 @@ static void add_sky(struct run *run)
         run_say(run, "%s: nothing emits light: --sky 1 is taken%s", run->options.scene,
                 reflects ? ""
                          : "; and nothing reflects any (Kd, or colours of vertices)");
-        *sky = (struct rgb){{1.0, 1.0, 1.0}};
+        sky->kind = SKY_UNIFORM;
+        sky->level = (struct rgb){{1.0, 1.0, 1.0}};
     }
-    if (scene->input_count > 0 && rgb_sum(*sky) > 0.0) {
-        input_say_up(run);
-        sky_add(scene, *sky);
-    }
+    if (scene->input_count == 0 ||
+        (sky->kind == SKY_NONE && !(sky->sun_irradiance > 0.0)))
+        return true;
+    input_say_up(run);
+    return sky_add(scene, sky, &run->error);
 }
 
 /* Takes the upward axis: as given, or as a view has it, or as the scene seems to have.
@@ -260,13 +268,15 @@ static bool read_scene(struct run *run)
         scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
-    if (!run->options.unlit)
-        add_sky(run);
+    int32_t dome = 0;
+    if (!run->options.unlit && !add_sky(run, &dome))
+        return false;
     struct error wrong = {0};
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
     if (run->options.unlit || run->options.criterion.final_gather == 0)
         scene_drop_panes(run->scene);
+    prepared.degenerate -= dome;
     warn_repairs(run, &read, &prepared);
     return run->options.unlit || check_emission(run, error);
 }

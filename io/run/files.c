@@ -78,7 +78,7 @@ static int files_to_stdout(const struct options *options)
 bool files_check(const struct options *options, struct error *error)
 {
     const char *others[] = {options->scene, options->load_links, options->resume,
-                            options->at};
+                            options->at, options->sky.path};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (others[i] && !files_check_input(options, others[i], error))
             return false;

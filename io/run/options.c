@@ -146,24 +146,63 @@ static bool copy_digits(const char *text, size_t length, char digits[DIGITS_ROOM
     return length < DIGITS_ROOM;
 }
 
-/* Sets a colour: a number for all bands, or R,G,B. */
-static bool set_colour(const struct argument *a)
+/* Reads as many numbers as there are, but `most`, with commas between; 0: others. */
+static int read_list(const char *at, int most, double *numbers)
 {
-    struct rgb *colour = a->field;
-    const char *at = a->value;
-    bool alone = !strchr(at, ',');
-    for (int c = 0; c < BANDS; c++) {
+    for (int count = 0; count < most; at++) {
         char digits[DIGITS_ROOM];
         size_t length = strcspn(at, ",");
         if (!copy_digits(at, length, digits) ||
-            !text_is_number(digits, &colour->band[c]) ||
-            (at[length] == ',') == (alone || c == BANDS - 1))
-            return is_not(a, "a number, or three as in R,G,B");
-        if (!check_range(a, colour->band[c], 1.0, "", ""))
-            return false;
-        at += alone ? 0 : length + 1;
+            !text_is_number(digits, &numbers[count++]))
+            return 0;
+        at += length;
+        if (!*at)
+            return count;
     }
+    return 0;
+}
+
+/* Sets a sky: a number for all bands, or R,G,B, alone or behind a name; or a file. */
+static bool set_sky(const struct argument *a)
+{
+    static const char *const NAMES[] = {[SKY_OVERCAST] = "overcast,",
+                                        [SKY_CLEAR] = "clear,"};
+    struct sky *sky = a->field;
+    const char *at = a->value;
+    double numbers[BANDS];
+    sky->kind = strspn(at, "0123456789.,+-eE") == strlen(at) ? SKY_UNIFORM : SKY_TABLE;
+    for (int kind = SKY_OVERCAST; kind <= SKY_CLEAR; kind++)
+        if (strncmp(a->value, NAMES[kind], strlen(NAMES[kind])) == 0) {
+            sky->kind = (enum sky_kind)kind;
+            at += strlen(NAMES[kind]);
+        }
+    sky->path = sky->kind == SKY_TABLE ? a->value : NULL;
+    if (sky->path)
+        return true;
+    int count = read_list(at, BANDS, numbers);
+    if (count != 1 && count != BANDS)
+        return is_not(a, "a number, three as in R,G,B, overcast,L, clear,L, or a file");
+    for (int c = 0; c < BANDS; c++) {
+        sky->level.band[c] = numbers[c % count];
+        if (!check_range(a, sky->level.band[c], 1.0, "", ""))
+            return false;
+    }
+    if (sky->kind == SKY_UNIFORM && !(rgb_sum(sky->level) > 0.0))
+        sky->kind = SKY_NONE;
     return true;
+}
+
+static bool set_sun(const struct argument *a)
+{
+    struct sky *sky = a->field;
+    double n[4];
+    if (read_list(a->value, 4, n) != 4)
+        return is_not(a, "x,y,z,W");
+    sky->sun = (struct vec3){n[0], n[1], n[2]};
+    sky->sun_irradiance = n[3];
+    if (!(vec3_length(sky->sun) > 0.0))
+        return is_not(a, "a direction and W/m^2");
+    return check_range(a, n[3], 1.0, "", "");
 }
 
 /* Sets a fraction: a number, or a percentage. Of 5, 5% may be meant. */
@@ -314,7 +353,8 @@ static const struct option OPTIONS[] = {
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
     {"--ke", "radiosity|radiance", "Blender: 2nd", CHOICE(ke, "radiosity|radiance")},
     {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
-    {"--sky", "B|R,G,B", "around the scene", set_colour, FIELD(sky), 0, 1e30, NULL},
+    {"--sky", "B|R,G,B", "around the scene", set_sky, FIELD(sky), 0, 1e30, NULL},
+    {"--sun", "X,Y,Z,W", "", set_sun, FIELD(sky), 0, 1e30, NULL},
     {"--save-links", "F", "", TEXT(save_links)},
     {"--load-links", "F", "", TEXT(load_links)},
     {"--checkpoint", "F", "after each pass", TEXT(checkpoint)},
@@ -322,8 +362,8 @@ static const struct option OPTIONS[] = {
     {"--resume", "F", "go on from there", TEXT(resume)},
     {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
     {"--stats", "FILE", "report as JSON", TEXT(stats)},
+    {"--dump", "patches|links", "", CHOICE(dump, "nothing|patches|links")},
     {"--verbose", "", "", FLAG(verbose)},
-    {"--dump", "patches|links", "print these", CHOICE(dump, "nothing|patches|links")},
     {"--quiet", "", "print nothing", FLAG(quiet)},
     {"--help", "", "or --help=OPTION", FLAG(help)},
     {"--version", "", "and licence", FLAG(version)},
@@ -514,10 +554,18 @@ static void describe(const struct options *options, const char *name)
                  *(const bool *)(const void *)field ? "on" : "off");
     else if (option->set == set_integer || option->set == set_gather)
         snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
-    else if (option->set == set_colour) {
-        const struct rgb *colour = (const void *)field;
-        snprintf(line, room, "%s %.17g,%.17g,%.17g\n", name, colour->band[0],
-                 colour->band[1], colour->band[2]);
+    else if (option->set == set_sky || option->set == set_sun) {
+        static const char *const NAMES[] = {"", "", "overcast,", "clear,", ""};
+        const struct sky *sky = (const void *)field;
+        const double *light = sky->level.band;
+        if (option->set == set_sun)
+            snprintf(line, room, "%s %.17g,%.17g,%.17g,%.17g\n", name, sky->sun.x,
+                     sky->sun.y, sky->sun.z, sky->sun_irradiance);
+        else if (sky->path)
+            snprintf(line, room, "%s %.200s\n", name, sky->path);
+        else
+            snprintf(line, room, "%s %s%.17g,%.17g,%.17g\n", name, NAMES[sky->kind],
+                     light[0], light[1], light[2]);
     } else if (option->set != set_choice)
         snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
     else {
@@ -580,9 +628,9 @@ const char *options_run_settings(const struct options *options)
 const char *options_light_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--two-sided-lamps", "--ke", "--sky", "--oracle", "--linking",
-        "--form-factor", "--solver", "--epsilon", "--accuracy", "--max-level",
-        "--min-area", "--tolerance", "--final-gather", NULL};
+        "--two-sided", "--two-sided-lamps", "--ke", "--sky", "--sun", "--oracle",
+        "--linking", "--form-factor", "--solver", "--epsilon", "--accuracy",
+        "--max-level", "--min-area", "--tolerance", "--final-gather", NULL};
     struct options plain = DEFAULTS;
     char line[100];
     size_t length = 0;
@@ -627,10 +675,16 @@ static const struct {
                "  Only eye and at are needed. An example is scenes/cornell.view.\n"},
     {"--max-level", "  of subdivision (10)\n"},
     {"--verbose", "  the levels of refinement, and more\n"},
+    {"--dump", "  prints all patches, or all links, in place of the summary\n"},
     {"--show", "  P is a patch, as 5/023, or a pixel, as 99,42. False colours of\n"
                "  radiosity or irradiance: see --lux, --lines, --exposure, too.\n"},
     {"--at", "  A point is a line of six numbers: x y z and a normal, with blanks or\n"
              "  commas between. Lines of CSV go to the standard output.\n"},
+    {"--sky", "  Or overcast,L or clear,L (those of the CIE; L: radiance of the zenith,\n"
+              "  or R,G,B), or a file of radiances by direction, of Radiance's\n"
+              "  gendaymtx. A clear sky needs --sun.\n"},
+    {"--sun", "  The direction towards the sun, and what a surface that faces it\n"
+              "  receives, W/m^2. 0,0,1 is straight up where z is.\n"},
     {"--ke", "  The unit of Ke, and of emissions in PLY files: W/m^2 (radiosity), or\n"
              "  W/m^2/sr (radiance), which is what Blender writes to its files.\n"},
     {"--min-area", "  of a patch, relative to the scene (1e-10)\n"},

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "io/run/target.h"
+#include "io/scene/sky.h"
 #include "rad/model.h"
 
 #define PHR_VERSION "0.3"
@@ -51,7 +52,7 @@ struct options {
     double exposure;          /* 0: chosen from the picture */
     enum up up;               /* the upward axis */
     enum ke ke;               /* of Ke, and of the emissions of a PLY file */
-    struct rgb sky;           /* radiosity of a sky, W/m^2; 0: none */
+    struct sky sky;           /* of --sky and --sun */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     const char *help_on;      /* option of --help=OPTION, or NULL */

@@ -3,8 +3,7 @@
  * H at a point is a plain row of form factors times the radiosities of the solution:
  * cosine rays find leaves, each with its mean B. Lamps, small and bright, would be noise
  * in it: the factor of each lamp is exact (Lambert), and segments to points on it tell
- * its visible share, weighted by the kernel of each. A sky, which is large, is left to
- * the rays: where nothing is in the way of it, its light has no noise.
+ * its visible share, weighted by the kernel of each. Facets of a sky are lamps.
  *
  * The rays are BATCHES sequences of their own, so the scatter of the answers by one
  * sequence is the deviation of their mean. The errors of the leaves met by rays come on
@@ -48,14 +47,15 @@ struct meter meter_make(const struct forest *forest, const struct octree *octree
     meter.panes = panes_create(scene);
     meter.lamps = alloc_array((size_t)roots, sizeof *meter.lamps);
     for (int32_t root = 0; root < roots; root++) {
+        if (scene_root_area(scene, root) > 0.0 &&
+            material_emits(scene_root_material(scene, root)))
+            meter.lamps[meter.lamp_count++] = root;
         if (!(scene_root_own_area(scene, root) > 0.0))
             continue;
         struct triangle t = scene_root_triangle(scene, root);
         low = none ? triangle_low(&t) : vec3_least(low, triangle_low(&t));
         high = none ? triangle_high(&t) : vec3_most(high, triangle_high(&t));
         none = false;
-        if (material_emits(scene_root_material(scene, root)))
-            meter.lamps[meter.lamp_count++] = root;
     }
     meter.shares = alloc_array((size_t)meter.lamp_count, sizeof *meter.shares);
     meter.height = HEIGHT * vec3_length(vec3_sub(high, low));
@@ -131,10 +131,10 @@ static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 at
     return patch;
 }
 
-/* Returns the light of all but lamps by a sequence of rays. Adds the sky's part to
- * `*lamps`, and the error of the leaves met to `*error`. */
+/* Returns the light of all but lamps by a sequence of rays. Adds the error of the leaves
+ * met to `*error`. */
 static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec3 normal,
-                            int rays, uint64_t seed, struct rgb *lamps, double *error)
+                            int rays, uint64_t seed, double *error)
 {
     const struct forest *forest = meter->forest;
     const struct scene *scene = forest->scene;
@@ -156,15 +156,9 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
             continue;
         int32_t leaf = leaf_at(forest, root, vec3_add(x, vec3_scale(d, far)));
         struct rgb emission = scene_root_material(scene, root)->emission;
-        struct rgb *straight = scene_is_sky(scene, root) ? lamps : NULL;
-        for (int c = 0; c < BANDS; c++) {
-            double part = weight.band[c];
-            sum.band[c] += part * forest->radiosity[leaf].band[c];
-            if (straight)
-                straight->band[c] += part * emission.band[c];
-            else
-                sum.band[c] -= part * emission.band[c];
-        }
+        struct rgb reflected = rgb_sub(forest->radiosity[leaf], emission);
+        for (int c = 0; c < BANDS; c++)
+            sum.band[c] += weight.band[c] * reflected.band[c];
         *error += meter->error ? (double)meter->error[leaf] / rays : 0.0;
     }
     return sum;
@@ -187,8 +181,8 @@ struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 
     }
     for (int batch = 0; batch < BATCHES && !stop_is_asked(); batch++) {
         uint64_t own = hash_mix(seed * BATCHES + (uint64_t)batch);
-        struct rgb lamps = {{0.0, 0.0, 0.0}}, sky = lamps;
-        struct rgb light = read_rest(meter, x, normal, each, own, &sky, &off);
+        struct rgb lamps = {{0.0, 0.0, 0.0}};
+        struct rgb light = read_rest(meter, x, normal, each, own, &off);
         for (int64_t k = 0; k < meter->lamp_count; k++) {
             struct rgb e = scene_root_material(scene, meter->lamps[k])->emission;
             double factor = meter->shares[k], part = factor * rgb_sum(e) / all;
@@ -200,7 +194,6 @@ struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 
                 lamps.band[c] += factor * seen.band[c] * e.band[c];
         }
         rgb_add(&light, 1.0, lamps);
-        rgb_add(&lamps, 1.0, sky);
         rgb_add(&reading.lamps, 1.0 / BATCHES, lamps);
         rgb_add(&reading.irradiance, 1.0 / BATCHES, light);
         for (int c = 0; c < BANDS; c++)

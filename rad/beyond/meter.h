@@ -12,7 +12,7 @@ struct meter {
     const struct octree *octree;  /* borrowed */
     const float *error;           /* [patches] borrowed: of B of leaves, W/m^2; or NULL */
     struct panes *panes;          /* owned; NULL: none */
-    int32_t *lamps;               /* [lamp_count] roots, but those of a sky */
+    int32_t *lamps;               /* [lamp_count] roots, those of a sky, too */
     int64_t lamp_count;
     double *shares;               /* [lamp_count] room for the light of each at a point */
     double height;                /* of a point above its surface, scene units */

@@ -107,8 +107,22 @@ static void test_logarithm(void)
     tap_ok(logarithm(1.0) == 0.0, "0 at 1");
 }
 
+static void test_exponential(void)
+{
+    struct random random = random_seed(3);
+    double worst = 0.0;
+    for (int i = 0; i < ARGUMENTS; i++) {
+        double x = 1400.0 * random_unit(&random) - 700.0;
+        x = i % 2 ? x : x / 1000.0;
+        worst = fmax(worst, error_of(exponential(x), exp(x)));
+    }
+    tap_ok(worst <= TOLERANCE && exponential(0.0) == 1.0,
+           "exponential: off by %.1e at most", worst);
+}
+
 int main(void)
 {
+    test_exponential();
     test_arctangent();
     test_arctangent_corners();
     test_arctangent_joints();

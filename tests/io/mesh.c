@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "io/picture/vtk.h"
-#include "io/scene/sky.h"
 #include "tests/load.h"
 #include "tests/random.h"
+#include "tests/reading.h"
 #include "tests/scenes.h"
 #include "tests/shaded.h"
 #include "tests/tap.h"
@@ -232,7 +232,7 @@ static void test_sky(void)
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(2, 0, 0), point(0, 1, 0), 1);
     struct scene *scene = scene_of_soup(&soup);
-    sky_add(scene, (struct rgb){{1, 1, 1}});
+    add_uniform_sky(scene, 1.0);
     struct world below = world_make(scene);
     struct shading *all = shading_create_flat(below.model.forest);
     tap_ok(mesh_count(below.model.forest) == 2 && all->own_count == 3 * 2 &&

@@ -133,7 +133,7 @@ static void test_switches(void)
     tap_ok(parse("--two-sided-lamps a.obj") && options.two_sided &&
                options.two_sided_lamps,
            "--two-sided-lamps includes --two-sided");
-    const double *sky = options.sky.band;
+    const double *sky = options.sky.level.band;
     tap_ok(parse("--sky 2.5 a.obj") && sky[0] == 2.5 && sky[1] == 2.5 && sky[2] == 2.5,
            "--sky of one number");
     tap_ok(parse("--sky 1,2,0 a.obj") && sky[0] == 1.0 && sky[1] == 2.0 && sky[2] == 0.0,
@@ -141,6 +141,16 @@ static void test_switches(void)
     tap_ok(!parse("--sky 1,2 a.obj") && !parse("--sky 1,2,3,4 a.obj") &&
                !parse("--sky 1,,2 a.obj") && !parse("--sky -1 a.obj"),
            "of nothing else");
+    tap_ok(parse("--sky clear,1,2,3 --sun 1,-2,3,4 a.obj") && sky[2] == 3.0 &&
+               options.sky.kind == SKY_CLEAR && options.sky.sun.y == -2.0 &&
+               options.sky.sun_irradiance == 4.0,
+           "a clear sky, and a sun");
+    tap_ok(parse("--sky a.mtx a.obj") && is_same(options.sky.path, "a.mtx") &&
+               parse("--sky overcast,2 a.obj") && !options.sky.path &&
+               options.sky.kind == SKY_OVERCAST && sky[0] == 2.0 &&
+               !parse("--sky overcast,x a.obj") && !parse("--sun 1,2,3 a.obj") &&
+               !parse("--sun 0,0,0,1 a.obj") && !parse("--sun 1,2,3,-1 a.obj"),
+           "an overcast sky, a file, and what is neither");
     tap_ok(parse("--quiet a.obj") && options.quiet && !options.verbose &&
                parse("--verbose a.obj") && options.verbose && !options.quiet,
            "--quiet and --verbose");

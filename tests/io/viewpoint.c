@@ -3,7 +3,6 @@
  * what it is about: of a box its inside, of a plan its floor, of a lamp its front. */
 #include "io/picture/viewpoint.h"
 
-#include "io/scene/sky.h"
 #include "tests/reading.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -126,7 +125,7 @@ static void test_open(void)
     soup_add_quad(&soup, point(-99, -99, 0), point(198, 0, 0), point(0, 198, 0), 1);
     paint(&soup, 0.5, 0.0);
     scene = scene_of_soup(&soup);
-    sky_add(scene, (struct rgb){{1.0, 1.0, 1.0}});
+    add_uniform_sky(scene, 1.0);
     shot = shoot(world_make(scene), NULL);
     check("below a sky", shot, false, shot.shown[0] > 0.05 && shot.shown[2] == 0.0);
 

@@ -160,6 +160,10 @@ bool balance_find_more(struct light_balance *b, const struct rgb *radiosity)
         int64_t s = balance_of(b, i) - b->flows;
         struct rgb rho = equation_material(e, i)->reflectance;
         double kept = (double)e->covers[i].kept, bare = equation_bare_area(e, i);
+        const struct forest *forest = e->gather->model->forest;
+        uint32_t root = forest->patches[e->mesh->leaves[i]].id.root;
+        if (scene_is_sky(forest->scene, (int32_t)root))
+            lost[s] = HUGE_VAL;
         for (int c = 0; c < BANDS; c++)
             absorbed[s] += bare * (1.0 - rho.band[c]) * radiosity[i].band[c];
         if (kept > 0.0 && !e->mesh->cut[e->mesh->leaves[i]])

@@ -49,8 +49,8 @@ void balance_absorb(struct light_balance *b, struct rgb *h);
 /* Finds spaces that are closed though rays escape: in a thing that touches walls and has
  * no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
  * across have rays of both sides, and tell nothing. Lost light is held against what is
- * absorbed: in a white room it is missing at every reflection. Returns whether there are
- * more. */
+ * absorbed: in a white room it is missing at every reflection. A space with a sky is
+ * open. Returns whether there are more. */
 bool balance_find_more(struct light_balance *b, const struct rgb *radiosity);
 
 /* Finds what light in an open space may be off by in the end: rows lose or make light at
