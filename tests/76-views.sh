@@ -14,16 +14,17 @@ above="--view $work/above.view"
 
 ./phr $box $front -o "$work/front.ppm"
 ./phr $box $front -o "$work/front.pfm"
+./phr $box $front -o "$work/front.error.pfm"
 ./phr $box $above -o "$work/above.ppm"
 ./phr $box -o "$work/mesh.ply"
 ./phr $box -o "$work/mesh.vtk"
 for ranks in 1 4; do
     all=$work/all-$ranks
     $MPIEXEC -n $ranks ./phr $box -o "$all-first.ppm" $front -o "$all-front.ppm" \
-        -o "$all-front.pfm" -o "$all-mesh.ply" $above -o "$all-above.ppm" \
-        -o "$all-mesh.vtk" \
+        -o "$all-front.pfm" -o "$all-front.error.pfm" -o "$all-mesh.ply" \
+        $above -o "$all-above.ppm" -o "$all-mesh.vtk" \
         --stats "$all.json"
-    for output in front.ppm front.pfm above.ppm mesh.ply mesh.vtk; do
+    for output in front.ppm front.pfm front.error.pfm above.ppm mesh.ply mesh.vtk; do
         check "$output, with all others on $ranks ranks: as alone" \
             cmp "$all-$output" "$work/$output"
     done
@@ -84,6 +85,17 @@ shows normals tests/golden/spheres.obj --epsilon 1e-2 -- $small \
     --view tests/golden/spheres.view
 shows pixels tests/golden/spheres.obj --epsilon 1e-2 -- --size 24x18 --samples 2 \
     --view tests/golden/spheres.view --final-gather 16,pixels
+
+./phr scenes/cornell.obj --epsilon 1e-2 --quiet $small $front -o "$work/run.error.pfm"
+./phr "$work/plain.ply" --quiet $small $front -o "$work/again.error.pfm"
+check "the errors of a stored solution's picture are those of the run" \
+    same "$work/again.error.pfm" "$work/run.error.pfm" 1e-4
+for options in --paper "--final-gather 0" "--show level"; do
+    ./phr scenes/cornell.obj --epsilon 1e-2 $small $front $options \
+        -o "$work/none.error.pfm" >"$work/log" 2>&1
+    check "$options: no errors" [ $? -eq 2 ]
+    check "and it is said" grep -q 'none.error.pfm: only pictures of light' "$work/log"
+done
 
 # --accuracy begins with 64 rays of leaves, and has pixels of 256 or as many as are given.
 # accurate NAME OPTIONS...: the mesh $work/NAME.ply; prints the rays of all pixels.

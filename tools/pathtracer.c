@@ -80,9 +80,10 @@ static bool check_outputs(struct tracing *tracing)
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         meshes = meshes || format_is_mesh(target->format);
-        if (target->format == FORMAT_VTK)
-            return error_set(&run->error, EXIT_USAGE, "%s: meshes are PLY here",
-                             target->path);
+        if (target->format == FORMAT_VTK || target->format == FORMAT_ERROR)
+            return error_set(&run->error, EXIT_USAGE, "%s: %s here", target->path,
+                             format_is_mesh(target->format) ? "meshes are PLY"
+                                                            : "errors are not known");
     }
     if (run->options.output_count == 0 || !run->options.scene)
         return error_set(&run->error, EXIT_USAGE, "%s", USAGE);

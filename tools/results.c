@@ -41,12 +41,13 @@ static struct tone colour_falsely(struct run *run, struct image *image)
 }
 
 /* Writes the pictures of a view: those of bytes last, as these may have false colours. On
- * rank 0 alone. */
-static void write_pictures(struct run *run, int view, float *picture)
+ * rank 0 alone. `errors`: of pixels; NULL: none are wanted. */
+static void write_pictures(struct run *run, int view, float *picture, float *errors)
 {
     const struct options *options = &run->options;
     const struct camera *camera = &run->cameras[view];
     struct image image = {camera->width, camera->height, picture};
+    struct image of_errors = {camera->width, camera->height, errors};
     struct tone tone = tone_choose(options->exposure, picture,
                                    (int64_t)camera->width * camera->height);
     bool falsely = options->show == SHOW_RADIOSITY || options->show == SHOW_IRRADIANCE;
@@ -64,7 +65,8 @@ static void write_pictures(struct run *run, int view, float *picture)
         }
         if (has_tone)
             run->exposures[view] = tone.exposure;
-        image_write(&image, &tone, target, &error);
+        image_write(target->format == FORMAT_ERROR ? &of_errors : &image, &tone, target,
+                    &error);
         run_lose(run, &error);
     }
 }
@@ -130,6 +132,30 @@ static void place_camera(struct run *run)
     account_end(&run->solver->account, PHASE_VIEWPOINT);
 }
 
+/* True if the errors of the pixels of a view are wanted; -1: of any. */
+static bool wants_errors(const struct options *options, int view)
+{
+    bool wants = false;
+    for (int i = 0; i < options->output_count; i++)
+        wants = wants || (options->outputs[i].format == FORMAT_ERROR &&
+                          (view < 0 || options->outputs[i].view == view));
+    return wants;
+}
+
+/* Takes the errors of pixels, which stand behind the light of each scanline, to a picture
+ * of their own. Leaves the light. */
+static float *part_errors(float *picture, const struct camera *camera)
+{
+    size_t length = BANDS * (size_t)camera->width, height = (size_t)camera->height;
+    float *errors = alloc_array(length * height, sizeof *errors);
+    for (size_t y = 0; y < height; y++) {
+        memcpy(errors + y * length, picture + (2 * y + 1) * length,
+               length * sizeof *errors);
+        memmove(picture + y * length, picture + 2 * y * length, length * sizeof *errors);
+    }
+    return errors;
+}
+
 /* Collective. Returns the picture of a camera on rank 0, NULL on the others. */
 static float *make_picture(struct run *run, const struct renderer *renderer,
                            const struct camera *camera)
@@ -138,7 +164,8 @@ static float *make_picture(struct run *run, const struct renderer *renderer,
     progress_begin(&run->progress.progress, "rendering", -1, 0);
     float *scanlines = render_scanlines(renderer, camera, run->options.samples,
                                         comm->rank, comm->size, &run->progress.progress);
-    return picture_gather(comm, scanlines, 3 * (size_t)camera->width, camera->height);
+    size_t floats = (renderer->error ? 2u : 1u) * BANDS * (size_t)camera->width;
+    return picture_gather(comm, scanlines, floats, camera->height);
 }
 
 /* Collective. Renders and writes the pictures of all views. False on an error or a
@@ -149,12 +176,18 @@ static bool show_views(struct run *run, const struct renderer *renderer)
     run->exposures = alloc_array((size_t)run_camera_count(run), sizeof *run->exposures);
     for (int view = 0; view < run_camera_count(run); view++) {
         account_begin(account, PHASE_RENDER);
-        float *picture = make_picture(run, renderer, &run->cameras[view]);
+        struct renderer own = *renderer;
+        if (!wants_errors(&run->options, view))
+            own.error = NULL;
+        float *picture = make_picture(run, &own, &run->cameras[view]);
+        float *errors = picture && own.error ? part_errors(picture, &run->cameras[view])
+                                             : NULL;
         bool good = run_goes_on(run) && show_overlay(run, &run->cameras[view], picture);
         account_end(account, PHASE_RENDER);
         account_begin(account, PHASE_WRITE);
         if (good && run->comm.rank == 0)
-            write_pictures(run, view, picture);
+            write_pictures(run, view, picture, errors);
+        alloc_free(errors);
         alloc_free(picture);
         account_end(account, PHASE_WRITE);
         if (!run_agree(run))
@@ -190,6 +223,7 @@ static bool show_pictures(struct run *run)
         renderer_make(run->octree, shading, gathers ? answer->gather : NULL);
     double reflected = forest_mean_reflected(run->solver->model.forest);
     renderer.irradiance = white;
+    renderer.error = white ? irradiance.error : answer ? answer->error : NULL;
     if (white && reflected > 0.0)
         renderer.brighter = forest_mean_reflected(&irradiance.forest) / reflected;
     if (run->options.pixels && renderer.rays < run->options.pixel_rays)

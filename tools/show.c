@@ -64,6 +64,12 @@ bool show_check(struct run *run)
                              : run->options.criterion.final_gather > 0;
     if (!options_show(&run->options, 0)) /* there is no picture */
         return true;
+    bool colours = show == SHOW_OWNER || show == SHOW_LEVEL || show == SHOW_ERROR;
+    for (int i = 0; i < run->options.output_count && (colours || !error); i++)
+        if (run->options.outputs[i].format == FORMAT_ERROR)
+            return error_set(&run->error, EXIT_USAGE,
+                             "%s: only pictures of light after a final gather have errors",
+                             run->options.outputs[i].path);
     if (show == SHOW_ERROR && !error)
         return error_set(&run->error, EXIT_USAGE,
                          "--show error: there is no error without a final gather");

@@ -13,6 +13,7 @@ bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error)
 {
     switch (target->format) {
+    case FORMAT_ERROR:
     case FORMAT_PFM: return pfm_write(image, target->path, error);
     case FORMAT_HDR: return hdr_write(image, target->path, error);
     case FORMAT_PNG: return png_write(image, tone, target->path, error);

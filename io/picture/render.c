@@ -18,6 +18,12 @@
  * part from around (cuts.h), or are more than the segments, as the facets of a ball: so
  * by more, too, where the mesh has another light of lamps there.
  *
+ * The standard error of a pixel is the root of four parts, squared and added up: that of
+ * the mesh's light, which is claimed for its leaves; the noise of segments and rays; what
+ * lamps' light is apart from the mesh's where few segments may agree by chance; and what
+ * n camera rays tell of the edges in a pixel, whose variance is n^-3/2 times that of the
+ * light they meet.
+ *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
  * its normal, weighted by the barycentric coordinate of the corner (Hanika, 2021). So
@@ -53,7 +59,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
                               struct final_gather *gather)
 {
     int rays = gather ? gather->model->criterion.final_gather : 0;
-    return (struct renderer){octree, shading, gather, rays, false, 1.0};
+    return (struct renderer){octree, shading, gather, NULL, rays, false, 1.0};
 }
 
 /* --- visible points --- */
@@ -69,12 +75,15 @@ struct pixel_roots {
     int count;
 };
 
-/* Light of a pixel. */
+/* Light of a pixel; the last three fields are for its error alone. */
 struct pixel_light {
     struct rgb sum;   /* of the radiosities met by the camera rays, W/m^2 */
     struct rgb apart; /* excess of lamps' light over the mesh's, where segments may agree
                          by chance */
     double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
+    struct rgb noise;   /* variance of `sum` by the sequences, (W/m^2)^2 */
+    struct rgb squares; /* sum of the squared radiosities, (W/m^2)^2 */
+    struct rgb mesh;    /* sum of the standard errors of leaves, W/m^2 */
 };
 
 /* Least cosine between the normals at a corner and of the plane, 45 degrees, for facets
@@ -143,6 +152,44 @@ static struct rgb sum_of_shares(const struct pixel_roots *view, int count)
     return sum;
 }
 
+/* Adds what the error of a pixel is made of, by the first `count` entries, which are of
+ * one root and show the same light, with the sum of shares `seen`. The error of a leaf,
+ * which is that of its brightest band, is as large a part of the others. */
+static void add_error(const struct renderer *renderer, const struct pixel_roots *view,
+                      int count, struct rgb seen, struct rgb shown,
+                      struct pixel_light *pixel)
+{
+    if (!renderer->error)
+        return;
+    const struct forest *forest = renderer->shading ? renderer->shading->forest
+                                                    : renderer->gather->model->forest;
+    const struct material *m = scene_root_material(forest->scene, view->roots[0]);
+    double most = 0.0, error = 0.0;
+    for (int i = 0; i < count; i++) {
+        double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
+        int32_t leaf = shading_leaf_at(forest, view->roots[i], w);
+        error += DEVIATION * (double)renderer->error[leaf];
+    }
+    for (int c = 0; c < BANDS; c++)
+        most = fmax(most, shown.band[c] - m->emission.band[c]);
+    for (int c = 0; c < BANDS; c++) {
+        double b = shown.band[c], share = seen.band[c] / count;
+        pixel->squares.band[c] += count * share * share * b * b;
+        if (most > 0.0)
+            pixel->mesh.band[c] +=
+                share * error * fmax(0.0, b - m->emission.band[c]) / most;
+    }
+}
+
+/* The variance of a band by a sequence of `count` segments or rays: that by chance over
+ * the root of their number, as on a grid that an edge cuts; more where the halves of the
+ * sequence are further apart, as where a few rays bring most light. */
+static double variance_of(const struct gather_light *light, int count, int band)
+{
+    double chance = light->variance.band[band];
+    return fmin(chance, fmax(chance / sqrt(count), light->halves.band[band]));
+}
+
 /* Adds the light of the first `count` entries, which are of one root and whole alike. */
 static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
                       int count, uint64_t seed, int rays, struct pixel_light *pixel)
@@ -169,7 +216,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     bool whole = view->whole[0] > 0;
     struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
     double rho = 0.0, w[3] = {middle.x, middle.y, middle.z};
-    struct rgb other = m->emission, mesh = {{0.0, 0.0, 0.0}};
+    struct rgb other = m->emission, mesh = {{0.0, 0.0, 0.0}}, shown;
     struct rgb seen = sum_of_shares(view, count);
     if (!whole) {
         other = shading_at(shading, shading->values, view->roots[0], w);
@@ -178,12 +225,17 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     for (int c = 0; c < BANDS; c++) {
         double h = light.lamps.band[c] + light.rest.band[c];
         double b = m->reflectance.band[c] * h;
-        pixel->sum.band[c] += seen.band[c] * (other.band[c] + b);
+        shown.band[c] = other.band[c] + b;
+        pixel->sum.band[c] += seen.band[c] * shown.band[c];
         if (light.by_chance && !whole)
             pixel->apart.band[c] += seen.band[c] * (b - mesh.band[c]);
         rho = fmax(rho, m->reflectance.band[c]);
     }
-    pixel->variance += count * count * rho * rho * light.variance;
+    pixel->variance += count * count * rho * rho * rgb_sum(light.variance);
+    for (int c = 0; c < BANDS; c++)
+        pixel->noise.band[c] += seen.band[c] * seen.band[c] * m->reflectance.band[c] *
+                                m->reflectance.band[c] * variance_of(&light, rays, c);
+    add_error(renderer, view, count, seen, shown, pixel);
 }
 
 /* Moves the entries like the first to the front. Returns their number. */
@@ -218,23 +270,30 @@ static int rays_for_all(const struct renderer *renderer, const struct pixel_root
     double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
     if (!shading)
         return renderer->rays;
-    enum shade shade = shading->shades[shading_leaf_at(shading, view->roots[i], w)];
+    enum shade shade =
+        shading->shades[shading_leaf_at(shading->forest, view->roots[i], w)];
     return shade == SHADE_SMOOTH  ? 0
            : shade == SHADE_STEEP ? STEEP * renderer->rays
                                   : (renderer->rays + COVERED - 1) / COVERED;
 }
 
 /* Returns the light of all entries together, as the mesh has it. */
-static struct rgb show_mesh(const struct shading *shading, const struct pixel_roots *view)
+static struct pixel_light show_mesh(const struct renderer *renderer,
+                                    const struct pixel_roots *view)
 {
-    struct rgb sum = {{0.0, 0.0, 0.0}};
+    const struct shading *shading = renderer->shading;
+    struct pixel_light pixel = {.variance = 0.0};
     for (int i = 0; i < view->count; i++) {
         double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
         struct rgb b = shading_at(shading, shading->values, view->roots[i], w);
+        struct pixel_roots one = {.roots = view->roots + i, .weights = view->weights + i,
+                                  .through = view->through ? view->through + i : NULL};
+        struct rgb seen = sum_of_shares(&one, 1);
         for (int c = 0; c < BANDS; c++)
-            sum.band[c] += (view->through ? view->through[i].band[c] : 1.0) * b.band[c];
+            pixel.sum.band[c] += seen.band[c] * b.band[c];
+        add_error(renderer, &one, 1, seen, b, &pixel);
     }
-    return sum;
+    return pixel;
 }
 
 /* Returns the light of all entries together, gathered by `more` times the fewest
@@ -283,20 +342,23 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
 }
 
 /* The same by few segments, and where unsure by more, other ones; and so on. */
-static struct rgb show_well(const struct renderer *renderer,
-                            const struct pixel_roots *view, uint64_t seed)
+static struct pixel_light show_well(const struct renderer *renderer,
+                                    const struct pixel_roots *view, uint64_t seed)
 {
     if (!renderer->gather)
-        return show_mesh(renderer->shading, view);
+        return show_mesh(renderer, view);
     struct pixel_light pixel = show(renderer, view, seed, 1);
     int now = 0, more = 1;
     while (renderer->shading && now < more) {
         now = more;
         more = more_for(renderer, &pixel, view, now);
-        if (more > now)
+        if (more > now) {
             pixel = show(renderer, view, seed, more);
+            pixel.apart = (struct rgb){{0.0, 0.0, 0.0}}; /* more segments hardly agree
+                                                            by chance */
+        }
     }
-    return pixel.sum;
+    return pixel;
 }
 
 struct rgb render_point(const struct renderer *renderer, int32_t root,
@@ -306,7 +368,7 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
     int whole;
     struct pixel_roots view = {.roots = &root, .weights = &w, .whole = &whole, .at = &at,
                                .count = 1};
-    return show_well(renderer, &view, seed);
+    return show_well(renderer, &view, seed).sum;
 }
 
 /* --- pixels --- */
@@ -392,16 +454,29 @@ static void collect_roots(struct strip *strip, const struct octree_hit *hits,
     }
 }
 
+/* Returns the standard error of a band of a pixel, W/m^2. */
+static double pixel_error(const struct pixel_light *pixel, int rays, int band)
+{
+    double n = rays, mean = pixel->sum.band[band] / n, mesh = pixel->mesh.band[band] / n;
+    double spread = fmax(0.0, pixel->squares.band[band] / n - mean * mean);
+    double apart = pixel->apart.band[band] / n;
+    return sqrt(mesh * mesh + apart * apart + pixel->noise.band[band] / (n * n) +
+                spread / (n * sqrt(n)));
+}
+
 static void render_pixel(struct strip *strip, const struct octree_hit *hits, int px,
                          int py, float *rgb)
 {
     const struct renderer *renderer = strip->renderer;
     uint64_t seed = (uint64_t)py * (uint64_t)strip->camera->width + (uint64_t)px;
     collect_roots(strip, hits, &strip->view);
-    struct rgb sum = show_well(renderer, &strip->view, seed);
-    rgb_add(&sum, 1.0, strip->glare);
+    struct pixel_light pixel = show_well(renderer, &strip->view, seed);
+    rgb_add(&pixel.sum, 1.0, strip->glare);
     for (int c = 0; c < BANDS; c++)
-        rgb[c] = (float)(sum.band[c] / strip->rays);
+        rgb[c] = (float)(pixel.sum.band[c] / strip->rays);
+    for (int c = 0; c < BANDS && renderer->error; c++)
+        rgb[BANDS * strip->camera->width + c] =
+            (float)pixel_error(&pixel, strip->rays, c);
 }
 
 static void render_scanline(struct strip *strip, int py, float *rgb)
@@ -430,7 +505,8 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
 {
     const struct scene *scene = renderer->gather ? renderer->gather->model->scene
                                                  : renderer->shading->forest->scene;
-    size_t length = 3 * (size_t)camera->width, rays = (size_t)(samples * samples);
+    size_t rays = (size_t)(samples * samples);
+    size_t length = (renderer->error ? 2u : 1u) * BANDS * (size_t)camera->width;
     int scanlines = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)scanlines * length, sizeof *rgb);
     struct strip strip = {

@@ -121,8 +121,7 @@ static void add_mean(const struct shading *shading, const struct tile *tile,
 
 /* --- values --- */
 
-/* The deviation of a leaf's radiosity, in parts of its error. */
-static const double DEVIATION = 0.4;
+const double DEVIATION = 0.4;
 
 /* Corrections of light without that of lamps; how far this light may be beyond the
  * leaves. */
@@ -441,9 +440,9 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading);
 }
 
-int32_t shading_leaf_at(const struct shading *shading, int32_t root, double weight[3])
+int32_t shading_leaf_at(const struct forest *forest, int32_t root, double weight[3])
 {
-    const struct patch *patches = shading->forest->patches;
+    const struct patch *patches = forest->patches;
     int32_t p = root;
     while (!patch_is_leaf(&patches[p]))
         p = patches[p].children + triangle_child_at(weight);
@@ -454,7 +453,7 @@ struct rgb shading_at(const struct shading *shading, const struct rgb *values,
                       int32_t root, const double weight[3])
 {
     double w[3] = {weight[0], weight[1], weight[2]};
-    int32_t p = shading_leaf_at(shading, root, w);
+    int32_t p = shading_leaf_at(shading->forest, root, w);
     if (shading->flat)
         return values[shading->corners[3 * (int64_t)p]];
     struct tile tile = whole_leaf(shading, values, p), inner;

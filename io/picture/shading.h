@@ -15,6 +15,9 @@ enum shade {
     SHADE_STEEP    /* nowhere: light varies by more than its mean over all surfaces */
 };
 
+/* The standard deviation of a leaf's radiosity, in parts of its error, 1. */
+extern const double DEVIATION;
+
 struct shading {
     const struct forest *forest; /* borrowed */
     bool flat;                   /* each leaf has its constant radiosity */
@@ -45,7 +48,7 @@ struct shading *shading_create_flat(const struct forest *forest);
 void shading_destroy(struct shading *shading);
 
 /* Returns the leaf at a point of a root. Makes barycentric coordinates the leaf's. */
-int32_t shading_leaf_at(const struct shading *shading, int32_t root, double weight[3]);
+int32_t shading_leaf_at(const struct forest *forest, int32_t root, double weight[3]);
 
 /* Interpolates these values at vertices there: shading->values, or shading->lamps. */
 struct rgb shading_at(const struct shading *shading, const struct rgb *values,

@@ -317,7 +317,7 @@ static bool set_paper(const struct argument *a)
 #define OTHER(set) set, 0, 0, 0, NULL
 
 static const struct option OPTIONS[] = {
-    {"-o", "[FORMAT:]FILE", "picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk .glb",
+    {"-o", "[FORMAT:]FILE", "picture .png .ppm .hdr .pfm .error.pfm; mesh .ply .vtk .glb",
      OTHER(add_output)},
     {"--view", "FILE", "of the -o behind it", OTHER(add_view)},
     {"--size", "WxH", "pixels (512x512)", OTHER(set_size)},

@@ -16,6 +16,7 @@ static const struct {
     [FORMAT_HDR] = {"hdr", false, false},
     [FORMAT_PLY] = {"ply", true, true},
     [FORMAT_VTK] = {"vtk", true, false},
+    [FORMAT_ERROR] = {"error.pfm", false, false},
     [FORMAT_GLB] = {"glb", true, true},
 };
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };

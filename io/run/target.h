@@ -6,9 +6,10 @@
 
 #include "geom/error.h"
 
-/* Formats of outputs, in the order of the table in io/run/target.c. */
+/* Formats of outputs, in the order of the table in io/run/target.c. FORMAT_ERROR: the
+ * standard errors of the pixels of a picture, as PFM. */
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
-                     FORMAT_VTK, FORMAT_GLB };
+                     FORMAT_VTK, FORMAT_GLB, FORMAT_ERROR };
 
 /* An output of -o. */
 struct target {

@@ -92,6 +92,9 @@ static void test_outputs(void)
         {"ppm1:a.ply", "ppm1:a.ply", FORMAT_PLY, true},
         {"a.ppm.gz", "a.ppm.gz", FORMAT_PPM, false},
         {".pfm", ".pfm", FORMAT_PPM, false},
+        {"a.error.pfm", "a.error.pfm", FORMAT_ERROR, true},
+        {"pfm:a.error.pfm", "a.error.pfm", FORMAT_PFM, true},
+        {"error.pfm:a", "a", FORMAT_ERROR, true},
         {"a.ply/", "a.ply/", FORMAT_PPM, false},
     };
     for (size_t i = 0; i < sizeof TARGETS / sizeof TARGETS[0]; i++) {
@@ -362,8 +365,8 @@ static void test_errors(void)
     check_refused("a.obj --Flat", "unknown option --Flat; did you mean --flat?");
     check_refused("a.obj -- --flat", "one scene at a time: a.obj and --flat");
     check_refused("a.obj -o ppm:",
-                  "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply, .vtk or "
-                  ".glb, or be FORMAT:FILE, as in ppm:FILE");
+                  "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply, .vtk, "
+                  ".glb or .error.pfm, or be FORMAT:FILE, as in ppm:FILE");
     check_refused("a.obj --accuracy 101%",
                   "--accuracy: 101% is not between 0.01 % and 100 %");
     check_refused("a.obj --accuracy 5", "--accuracy: 5 is not between 0.0001 and 1; "

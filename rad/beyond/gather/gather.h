@@ -14,8 +14,10 @@
 struct gather_light {
     struct rgb lamps; /* emission straight from lamps */
     struct rgb rest;  /* all other light; 0 unless asked for */
-    double variance;  /* of both, by the choice of segments and rays, over bands,
-                         (W/m^2)^2 */
+    struct rgb variance; /* of both, if segments and rays were chosen by chance,
+                            (W/m^2)^2 */
+    struct rgb halves;   /* a sample of the variance by the sequence: see struct
+                            gather_row */
     bool by_chance;   /* few segments may agree by chance */
 };
 

@@ -99,14 +99,16 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct gather_row row = {.leaf = point.patch};
     struct ray_sums sums = {.each = NULL};
     struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
-    struct gather_light light = {.variance = 0.0};
+    struct gather_light light;
     r.points = points;
     r.lamps_alone = !all;
     receiver_aim(&r);
     if (all)
         receiver_fire(&r);
-    for (int c = 0; c < BANDS; c++)
-        light.variance += row.chance[c];
+    for (int c = 0; c < BANDS; c++) {
+        light.variance.band[c] = row.chance[c];
+        light.halves.band[c] = row.halves[c];
+    }
     light.lamps = row.lamps;
     light.rest = sums.h;
     light.by_chance = r.by_chance;
