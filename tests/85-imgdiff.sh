@@ -137,6 +137,58 @@ check "-o to the standard output: the map alone" cmp "$out" "$work/map.expected"
 check "and the report on stderr" grep -qx 'max         0.3' "$err"
 ends 1 "-o into a missing folder" "$work/off.ppm" "$work/b.ppm" -o "$work/absent/map.ppm"
 
+# --- standard errors: 16 x 8 grey pixels, two blocks of 8 x 8, by fours in turns ---
+
+# turns NAME FLOAT FLOAT FLOAT FLOAT: a picture of these floats, as bytes in octal.
+turns() {
+    turn="$2$3$4$5" file=$work/$1.pfm
+    turn=$turn$turn$turn$turn turn=$turn$turn$turn$turn
+    printf "Pf 16 8 -1 $turn$turn" >"$file"
+}
+one='\0\0\200\077' two='\0\0\0\100' more='\0\0\220\077' less='\0\0\140\077'
+turns one $one $one $one $one
+turns more $more $more $more $more      # 1.125
+turns less $less $less $less $less      # 0.875
+turns noisy $two $one $one $one         # mean 1.25, scatter 0.0546 of it
+for e in 074 075; do                    # 2^-6 and 2^-5
+    byte='\0\0\'$([ $e = 074 ] && echo 200 || echo 0)'\'$e
+    turns error-$e "$byte" "$byte" "$byte" "$byte"
+done
+ends 0 "--error: 0.125 is four errors of 2^-5" --error "$work/error-075.pfm" \
+    "$work/more.pfm" "$work/one.pfm"
+check "and so it agrees" says \
+    'agrees: 0 of 2 blocks of 8 x 8 beyond 4 standard errors, worst 4 at (0, 0), brighter'
+ends 1 "and eight of 2^-6" --error "$work/error-074.pfm" "$work/less.pfm" \
+    "$work/one.pfm" -o "$work/map.ppm"
+check "and so it differs" says \
+    'differs: 2 of 2 blocks of 8 x 8 beyond 4 standard errors, worst 8 at (0, 0), darker'
+check "the whole, too" grep -q '^differs: 1 of 1 blocks of 16 x 16 .* worst 8 at' "$out"
+check "-o: darker by eight is blue" \
+    [ "$(tail -c 3 "$work/map.ppm" | od -An -tx1)" = ' 00 00 ff' ]
+ends 1 "brighter" --error "$work/error-074.pfm" "$work/more.pfm" "$work/one.pfm" \
+    -o "$work/map.ppm"
+check "is red" [ "$(tail -c 3 "$work/map.ppm" | od -An -tx1)" = ' ff 00 00' ]
+ends 1 "-o: as numbers" --error "$work/error-074.pfm" "$work/more.pfm" "$work/one.pfm" \
+    -o "$work/map.pfm"
+check "of standard errors: $(tail -c 4 "$work/map.pfm" | od -An -tf4)" \
+    holds "$(tail -c 4 "$work/map.pfm" | od -An -tf4) / 8 - 1 < 1e-6"
+ends 1 "0.25 with noise of 0.0546 and an error of 2^-6: 4.4" \
+    --error "$work/error-074.pfm" "$work/noisy.pfm" "$work/one.pfm"
+check "the scatter counts" grep -q '^differs: 2 of 2 .* worst 4.4 at' "$out"
+ends 1 "the whole picture has less noise: 5.0 by an error of 2^-5" \
+    --error "$work/error-075.pfm" "$work/noisy.pfm" "$work/one.pfm"
+check "its blocks agree" says \
+    'agrees: 0 of 2 blocks of 8 x 8 beyond 4 standard errors, worst 4 at (0, 0), brighter'
+ends 2 "an error of another size" --error "$work/one.hdr" "$work/one.pfm" "$work/one.pfm"
+ends 2 "an error of codes" --error "$work/error-074.pfm" "$work/b.ppm" "$work/b.ppm"
+ends 2 "no block is left" --error "$work/error-074.pfm" --below 0.5 "$work/one.pfm" \
+    "$work/one.pfm"
+printf "Pf 16 8 -1 " >"$work/broken.pfm"
+tail -c 512 "$work/one.pfm" | head -c 508 >>"$work/broken.pfm"
+printf '\0\0\300\177' >>"$work/broken.pfm"
+ends 1 "NaN is beyond all errors" --error "$work/error-075.pfm" "$work/broken.pfm" \
+    "$work/one.pfm"
+
 # --- bad usage and input ---
 
 ends 2 "no files"

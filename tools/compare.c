@@ -122,6 +122,62 @@ struct difference compare_images(const struct image *a, const struct image *b, i
     return difference;
 }
 
+/* --- pictures, by their errors --- */
+
+/* Samples are floats, made by a few operations: they may be off by this part. */
+static const double ROUNDING = 0x1p-20;
+
+/* The mean of a - b in a band over its standard error. */
+static double deviation(const struct block *block, const struct image *a,
+                        const struct image *b, const struct image *error, int band)
+{
+    double sum = 0.0, squares = 0.0, errors = 0.0, light = 0.0, n = 0.0;
+    for (int y = block->first_y; y < block->end_y; y++)
+        for (int x = block->first_x; x < block->end_x; x++, n++) {
+            double expected = (double)pixel_at(b, x, y)[band];
+            double off = (double)pixel_at(a, x, y)[band] - expected;
+            sum += off;
+            squares += off * off;
+            errors += (double)pixel_at(error, x, y)[band];
+            light += fabs(expected);
+        }
+    double mean = sum / n, claim = errors / n, rounding = ROUNDING * light / n;
+    double scatter = n > 1.0 ? fmax(0.0, squares / n - mean * mean) / (n - 1.0) : 0.0;
+    double variance = claim * claim + rounding * rounding + scatter;
+    if (!isfinite(mean) || !isfinite(variance))
+        return HUGE_VAL;
+    return mean == 0.0 ? 0.0 : mean / sqrt(variance);
+}
+
+struct deviations compare_errors(const struct image *a, const struct image *b,
+                                 const struct image *error, int side, double most,
+                                 double limit, struct image *map)
+{
+    struct deviations found = {.worst = 0.0};
+    for (int y = 0; y == 0 || y + side <= b->height; y += side)
+        for (int x = 0; x == 0 || x + side <= b->width; x += side) {
+            struct block at = {x, x + 2 * side <= b->width ? x + side : b->width,
+                               y, y + 2 * side <= b->height ? y + side : b->height};
+            double worst = 0.0;
+            if (block_is_brighter(&at, b, most))
+                continue;
+            for (int c = 0; c < 3; c++) {
+                double off = deviation(&at, a, b, error, c);
+                worst = fabs(off) > fabs(worst) ? off : worst;
+            }
+            for (int c = 0; c < 3 && map; c++)
+                block_fill(&at, map, c, (float)fmax(-FLT_MAX, fmin(FLT_MAX, worst)));
+            found.blocks++;
+            found.beyond += fabs(worst) > limit;
+            if (fabs(worst) > fabs(found.worst)) {
+                found.worst = worst;
+                found.x = x;
+                found.y = y;
+            }
+        }
+    return found;
+}
+
 /* --- solutions --- */
 
 bool compare_solutions(const struct solution_mesh *a, const struct solution_mesh *b,

@@ -4,7 +4,12 @@
  * The bound is on the largest difference, to find one wrong pixel in a large picture, and
  * relative to the root mean square of the expected side, to mean the same in dim scenes
  * and in bright ones. A bound on the RMS replaces this one if single pixels may differ,
- * at edges moved by a rounding. A sample not finite exceeds any bound. */
+ * at edges moved by a rounding. A sample not finite exceeds any bound.
+ *
+ * With an error for each pixel no bound is picked: blocks of all sizes are compared, from
+ * 8 x 8 pixels to the whole picture. Noise is less in large ones, where a few percent on
+ * one surface show; small ones show where. By chance, 1 block in 16,000 is beyond four
+ * standard errors, and few errors are quite normal: more than 1 in 1,000 differ. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,6 +17,7 @@
 #include "geom/alloc.h"
 #include "io/scene/camera.h"
 #include "io/picture/imagefile.h"
+#include "io/picture/scale.h"
 #include "io/run/options.h"
 #include "io/run/place.h"
 #include "io/scene/ply.h"
@@ -27,10 +33,14 @@ static const char HELP[] =
     "  --tolerance T  pass if no sample is off by more than T (0)\n"
     "  --rms T        pass if the RMS error is at most T; --tolerance then only if "
     "given\n"
-    "  --blocks N     compare means over blocks of N by N pixels (1)\n"
+    "  --error E      pass if at most 1 in 1,000 blocks is beyond 4 standard errors;\n"
+    "                 E: those of B's pixels, as phr -o B.error.pfm; A's noise is seen\n"
+    "  --blocks N     compare means over blocks of N by N pixels (1; with --error 8,\n"
+    "                 16, 32, ... up to the whole picture)\n"
     "  --below X      leave out blocks where a sample of B is above X, such as lamps\n"
     "  -o FILE        write |A - B|: as it is (.pfm .hdr), or scaled so that the\n"
-    "                 largest is white (.png .ppm); of meshes as a mesh (.ply)\n"
+    "                 largest is white (.png .ppm); of meshes as a mesh (.ply); with\n"
+    "                 --error by how many: red where A is brighter, blue where darker\n"
     "  --help  --version\n"
     "\n"
     "T is relative to the root mean square of B's samples. Samples of a .ppm are its "
@@ -40,8 +50,11 @@ static const char HELP[] =
     "Exit status: 0 passed; 1 not passed, or FILE cannot be written; 2 bad usage or "
     "input.\n";
 
+enum { SMALLEST = 8 }; /* pixels along a side of the smallest blocks with --error */
+
 struct request {
     const char *paths[2]; /* A and B */
+    const char *error;     /* picture of B's standard errors, or NULL */
     struct target output;  /* of -o; without it, no path */
     double tolerance, rms; /* negative: not given */
     double blocks;         /* pixels along a side of a block; an integer */
@@ -64,12 +77,14 @@ static double *number_of(struct request *request, const char *name)
 static bool set_option(struct request *request, const char *name, const char *value,
                        struct error *error)
 {
-    bool output = strcmp(name, "-o") == 0;
+    bool output = strcmp(name, "-o") == 0, errors = strcmp(name, "--error") == 0;
     double *number = number_of(request, name);
-    if (!number && !output)
+    if (!number && !output && !errors)
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
+    if (errors)
+        request->error = value;
     if (output)
         request->output = target_parse(value);
     if (output && !request->output.has_format)
@@ -143,6 +158,59 @@ static bool passes(const struct request *request, const struct difference *diffe
            (request->rms < 0.0 || rms <= request->rms);
 }
 
+static bool nothing_left(const struct request *request, struct error *error)
+{
+    return error_set(error, EXIT_USAGE, "%s: no block is below %g", request->paths[1],
+                     request->below);
+}
+
+/* Writes a number with a comma before each thousand. Returns `text`. */
+static const char *with_commas(int64_t number, char text[32])
+{
+    char digits[32];
+    int length = snprintf(digits, sizeof digits, "%lld", (long long)number), at = 0;
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            text[at++] = ',';
+        text[at++] = digits[i];
+    }
+    text[at] = '\0';
+    return text;
+}
+
+/* Compares blocks of all sizes, and makes false colours of the deviations of the smallest
+ * if they are to be seen. `passed`: the pictures agree. */
+static bool diff_by_errors(const struct request *request, const struct image *a,
+                           const struct image *b, const struct image *errors,
+                           struct image *map, bool *passed, struct error *error)
+{
+    static const double LIMIT = 4.0, SHARE = 1e-3;
+    const struct target *output = &request->output;
+    FILE *file = output->path && place_is_stdout(output->path) ? stderr : stdout;
+    struct scale scale = {.top = 2.0 * LIMIT, .step = LIMIT, .signs = true};
+    int first = request->blocks > 1.0 ? (int)request->blocks : SMALLEST;
+    *passed = true;
+    for (int side = first; side == first || side <= b->width || side <= b->height;
+         side *= 2) {
+        char beyond[32], blocks[32];
+        struct deviations found = compare_errors(a, b, errors, side, request->below,
+                                                 LIMIT, side == first ? map : NULL);
+        bool differs = (double)found.beyond > SHARE * (double)found.blocks;
+        *passed = *passed && !differs;
+        if (found.blocks == 0 && side == first)
+            return nothing_left(request, error);
+        if (found.blocks > 0)
+            fprintf(file, "%s: %s of %s blocks of %d x %d beyond %g standard errors, "
+                    "worst %.2g at (%d, %d), %s\n", differs ? "differs" : "agrees",
+                    with_commas(found.beyond, beyond), with_commas(found.blocks, blocks),
+                    side, side, LIMIT, fabs(found.worst), found.x, found.y,
+                    found.worst < 0.0 ? "darker" : "brighter");
+    }
+    if (output->path && format_has_tone(output->format))
+        scale_paint(&scale, map);
+    return true;
+}
+
 static bool write_map(const struct request *request, const struct image *map,
                       double largest, struct error *error)
 {
@@ -163,59 +231,97 @@ static bool check_output(const struct request *request, bool meshes, struct erro
         if (output->path && place_is_read(output->path, request->paths[i]))
             return error_set(error, EXIT_USAGE, "%s is read: no output goes over it",
                              request->paths[i]);
-    if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
-        return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
+    if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL || request->error))
+        return error_set(error, EXIT_USAGE,
+                         "--blocks, --below and --error are for pictures");
     return true;
 }
 
-static bool diff_images(const struct request *request, struct source sources[2],
-                        struct difference *difference, struct error *error)
+/* Refuses two pictures that cannot be compared. */
+static bool check_images(const char *const paths[2], const struct image *a,
+                         const struct image *b, bool alike, struct error *error)
 {
-    struct image a = {0}, b = {0}, map = {0};
+    if (!alike)
+        return error_set(error, EXIT_USAGE,
+                         "%s and %s: one is linear (PFM, HDR), the other not (PPM, PNG)",
+                         paths[0], paths[1]);
+    return (a->width == b->width && a->height == b->height) ||
+           error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", paths[0], a->width,
+                     a->height, paths[1], b->width, b->height);
+}
+
+/* Reads the errors of B. */
+static bool read_errors(const struct request *request, const struct image *b,
+                        bool is_linear, struct image *errors, struct error *error)
+{
+    const char *const paths[2] = {request->paths[1], request->error};
+    struct source source;
+    enum image_kind kind = IMAGE_CODES;
+    bool good = is_linear || error_set(error, EXIT_USAGE,
+                                       "--error: %s has codes, and not W/m^2", paths[0]);
+    good = good && source_open(&source, request->error, error);
+    if (!good)
+        return false;
+    good = image_read(errors, &kind, &source, error) &&
+           check_images(paths, b, errors, kind == IMAGE_LINEAR, error);
+    source_close(&source);
+    return good;
+}
+
+/* Sets `passed`. */
+static bool diff_images(const struct request *request, struct source sources[2],
+                        bool *passed, struct error *error)
+{
+    struct image a = {0}, b = {0}, map = {0}, errors = {0};
+    struct difference difference = {0};
     enum image_kind kind_a, kind_b;
     bool good = image_read(&a, &kind_a, &sources[0], error) &&
-                image_read(&b, &kind_b, &sources[1], error);
-    if (good && kind_a != kind_b)
-        good = error_set(error, EXIT_USAGE,
-                         "%s and %s: one is linear (PFM, HDR), the other not (PPM, PNG)",
-                         request->paths[0], request->paths[1]);
-    if (good && (a.width != b.width || a.height != b.height))
-        good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0],
-                         a.width, a.height, request->paths[1], b.width, b.height);
+                image_read(&b, &kind_b, &sources[1], error) &&
+                check_images(request->paths, &a, &b, kind_a == kind_b, error);
+    good = good && (!request->error || read_errors(request, &b, kind_b == IMAGE_LINEAR,
+                                                   &errors, error));
     if (good) {
         map = (struct image){a.width, a.height, NULL};
         map.rgb = alloc_array((size_t)a.width * (size_t)a.height, 3 * sizeof *map.rgb);
-        *difference = compare_images(&a, &b, (int)request->blocks, request->below, &map);
-        if (difference->samples == 0)
-            good = error_set(error, EXIT_USAGE, "%s: no block is below %g",
-                             request->paths[1], request->below);
     }
-    if (good) {
-        report(request, difference, kind_a == IMAGE_CODES ? 1.0 : difference->peak);
-        if (request->output.path)
-            good = write_map(request, &map, difference->largest, error);
+    if (good && request->error) {
+        good = diff_by_errors(request, &a, &b, &errors, &map, passed, error);
+        difference.largest = 1.0;
+    } else if (good) {
+        difference = compare_images(&a, &b, (int)request->blocks, request->below, &map);
+        good = difference.samples > 0 || nothing_left(request, error);
     }
+    if (good && !request->error) {
+        report(request, &difference, kind_a == IMAGE_CODES ? 1.0 : difference.peak);
+        *passed = passes(request, &difference);
+    }
+    if (good && request->output.path)
+        good = write_map(request, &map, difference.largest, error);
+    alloc_free(errors.rgb);
     alloc_free(a.rgb);
     alloc_free(b.rgb);
     alloc_free(map.rgb);
     return good;
 }
 
+/* Sets `passed`. */
 static bool diff_solutions(const struct request *request, struct source sources[2],
-                           struct difference *difference, struct error *error)
+                           bool *passed, struct error *error)
 {
     struct solution_mesh a = {0}, b = {0};
+    struct difference difference = {0};
     struct rgb *map = NULL;
     bool good = solution_mesh_read(&a, &sources[0], error) &&
                 solution_mesh_read(&b, &sources[1], error);
     if (good) {
         map = alloc_array((size_t)a.count, sizeof *map);
-        good = compare_solutions(&a, &b, difference, map, error);
+        good = compare_solutions(&a, &b, &difference, map, error);
     }
     if (good) {
-        report(request, difference, difference->peak);
+        report(request, &difference, difference.peak);
+        *passed = passes(request, &difference);
         if (request->output.path)
-            good = solution_write(&a, map, difference->largest, request->output.path,
+            good = solution_write(&a, map, difference.largest, request->output.path,
                                   error);
     }
     alloc_free(map);
@@ -225,28 +331,27 @@ static bool diff_solutions(const struct request *request, struct source sources[
 }
 
 static bool diff_sources(const struct request *request, struct source sources[2],
-                         struct difference *difference, struct error *error)
+                         bool *passed, struct error *error)
 {
     bool meshes = ply_is_meant(&sources[0]);
     if (meshes != ply_is_meant(&sources[1]))
         return error_set(error, EXIT_USAGE, "%s and %s: a picture and a mesh",
                          request->paths[0], request->paths[1]);
     return check_output(request, meshes, error) &&
-           (meshes ? diff_solutions(request, sources, difference, error)
-                   : diff_images(request, sources, difference, error));
+           (meshes ? diff_solutions(request, sources, passed, error)
+                   : diff_images(request, sources, passed, error));
 }
 
 /* Returns the exit status. */
 static int diff(const struct request *request, struct error *error)
 {
-    struct difference difference = {0};
     struct source sources[2] = {{0}, {0}};
-    bool good = source_open(&sources[0], request->paths[0], error) &&
+    bool passed = false, good = source_open(&sources[0], request->paths[0], error) &&
                 source_open(&sources[1], request->paths[1], error) &&
-                diff_sources(request, sources, &difference, error);
+                diff_sources(request, sources, &passed, error);
     source_close(&sources[0]);
     source_close(&sources[1]);
-    return !good ? error->code : passes(request, &difference) ? EXIT_DONE : EXIT_FAILED;
+    return !good ? error->code : passed ? EXIT_DONE : EXIT_FAILED;
 }
 
 int main(int argc, char **argv)

@@ -80,7 +80,7 @@ struct scale scale_choose(const struct image *image, double exposure, bool lux, 
 /* --- colours --- */
 
 /* The linear light of a screen for a part of the scale. */
-static void colour_of(double t, float rgb[3])
+static void colour_of(const struct scale *scale, double t, float rgb[3])
 {
     static const double POWERS[7][3] = {
         {0.2777273272234177, 0.005407344544966578, 0.3340998053353061},
@@ -91,7 +91,10 @@ static void colour_of(double t, float rgb[3])
         {4.776384997670288, -13.74514537774601, -65.35303263337234},
         {-5.435455855934631, 4.645852612178535, 26.3124352495832}};
     t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3 && scale->signs; c++)
+        rgb[c] = (float)fmin(1.0, c == 0 ? 2.0 * t : c == 2 ? 2.0 - 2.0 * t
+                                                            : 1.0 - fabs(2.0 * t - 1.0));
+    for (int c = 0; c < 3 && !scale->signs; c++) {
         double code = 0.0;
         for (int k = 6; k >= 0; k--)
             code = code * t + POWERS[k][c];
@@ -113,11 +116,12 @@ static void fill(struct image *image, int x, int y, int width, int height, float
 static void write_text(struct image *image, const char *text, int x, int y, int dot)
 {
     /* A row of dots in each letter: its last five bits, the first dot highest. */
-    static const char LETTERS[] = "0123456789.-+e^/Wmlux";
+    static const char LETTERS[] = "0123456789.-+e^/Wmluxs";
     static const char *const ROWS[] = {
         "NQSUYQN", "DLDDDDN", "NQABDH_", "_BDBAQN", "BFJR_BB", "_P^AAQN", "FHP^QQN",
         "_ABDHHH", "NQQNQQN", "NQQOABL", "@@@@@LL", "@@@_@@@", "@DD_DD@", "@@NQ_PN",
-        "DJQ@@@@", "AABDHPP", "QQQUUUJ", "@@ZUUQQ", "LDDDDDN", "@@QQQSM", "@@QJDJQ"};
+        "DJQ@@@@", "AABDHPP", "QQQUUUJ", "@@ZUUQQ", "LDDDDDN", "@@QQQSM", "@@QJDJQ",
+        "@@OPNA^"};
     for (; *text; text++, x += ADVANCE * dot) {
         const char *letter = strchr(LETTERS, *text);
         for (int k = 0; letter && k < GLYPH_WIDTH * GLYPH_HEIGHT; k++) {
@@ -132,7 +136,8 @@ static void write_text(struct image *image, const char *text, int x, int y, int 
 static void draw_bar(const struct scale *scale, struct image *image)
 {
     enum { BAR = 6, STRIP = 18, LEAST = 120, DOT = 240 }; /* dots; pixels */
-    const char *unit = scale->lux ? "lux" : "W/m^2";
+    const char *unit = scale->signs ? "s.e." : scale->lux ? "lux" : "W/m^2";
+    double low = scale->signs ? -scale->top : 0.0, range = scale->top - low;
     int dot = image->height < 2 * DOT ? 1 : image->height / DOT;
     int left = 4 * dot, unit_width = ((int)strlen(unit) + 1) * ADVANCE * dot;
     int bar = image->width - unit_width - 8 * ADVANCE * dot, free = 0;
@@ -142,13 +147,13 @@ static void draw_bar(const struct scale *scale, struct image *image)
     fill(image, 0, top, image->width, STRIP * dot, 1.0f);
     for (int x = 0; x < bar; x++)
         for (int y = 0; y < BAR * dot; y++)
-            colour_of((x + 0.5) / bar,
+            colour_of(scale, (x + 0.5) / bar,
                       &image->rgb[3 * ((size_t)(top + dot + y) * (size_t)image->width +
                                        (size_t)(left + x))]);
-    for (int k = 0; k * scale->step <= scale->top * (1.0 + 1e-9); k++) {
+    for (int k = 0; k * scale->step <= range * (1.0 + 1e-9); k++) {
         char number[32];
-        int x = left + (int)(k * scale->step / scale->top * bar);
-        snprintf(number, sizeof number, "%.6g", k * scale->step);
+        int x = left + (int)(k * scale->step / range * bar);
+        snprintf(number, sizeof number, "%.6g", low + k * scale->step);
         if (x < free)
             continue;
         fill(image, x, top + dot, dot, (BAR + 1) * dot, 0.0f);
@@ -176,9 +181,13 @@ void scale_paint(const struct scale *scale, struct image *image)
         float right = values[last ? i : i + 1];
         float below = values[i + image->width < pixels ? i + image->width : i];
         double part = (double)values[i] / scale->top;
+        if (scale->signs) {
+            colour_of(scale, 0.5 + 0.5 * part, &image->rgb[3 * i]);
+            continue;
+        }
         int band = band_of(scale, values[i]);
         float *rgb = &image->rgb[3 * i];
-        colour_of(part, rgb);
+        colour_of(scale, part, rgb);
         bool line = band != band_of(scale, right) || band != band_of(scale, below);
         for (int c = 0; c < 3 && (line || !(values[i] > 0.0f)); c++)
             rgb[c] = values[i] > 0.0f && part < 0.5 ? 1.0f : 0.0f;

@@ -14,6 +14,7 @@ double scale_value(const struct rgb *light, bool lux);
 struct scale {
     double top;  /* value of the last colour and more */
     double step; /* between numbers of the scale */
+    bool signs;  /* the scale begins at -top: red above 0, blue below, standard errors */
     bool lux;    /* else W/m^2 */
     int lines;   /* lines of equal values, this many below the top; 0: none */
 };

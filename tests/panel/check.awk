@@ -46,7 +46,7 @@ NR == FNR {
 }
 {
     if (!n[$1]++) names[++lines] = $1
-    broken[$1] = broken[$1] || NF != 23
+    broken[$1] = broken[$1] || NF != 24
     lost[$1] = lost[$1] || $11 == "-"
     value[$1, "power"] = $6; value[$1, "rms"] = $12; value[$1, "worst"] = $13
     value[$1, "held"] = $16; value[$1, "specks"] = $19; value[$1, "peak"] = $23

@@ -3,14 +3,15 @@
 
 BEGIN {
     split("seconds work power said said/2 said/10 leaves mean rms worst median tenth " \
-          "held noise claim specks grain block most peak", title)
-    columns = 20
+          "held noise claim specks grain block most peak " \
+          "within", title)
+    columns = 21
     # Worse is: larger (+1), smaller (-1), further from 0 (2), nothing (0); and a part by
     # which a figure may move by chance, where one order tells no more.
-    split("+1 +1 0 0 0 0 0 2 +1 +1 +1 +1 -1 0 0 +1 +1 +1 +1 0", way)
-    split(".15 .05 0 0 0 0 0 .1 .1 .25 .1 .1 .01 0 0 .5 .1 .1 .25 0", chance)
+    split("+1 +1 0 0 0 0 0 2 +1 +1 +1 +1 -1 0 0 +1 +1 +1 +1 0 -1", way)
+    split(".15 .05 0 0 0 0 0 .1 .1 .25 .1 .1 .01 0 0 .5 .1 .1 .25 0 .01", chance)
     # Figures below this are alike, in the units of the column.
-    split(".05 .1 0 0 0 0 0 .03 .03 .5 .05 .1 .5 0 0 3 .1 .05 3 0", alike)
+    split(".05 .1 0 0 0 0 0 .03 .03 .5 .05 .1 .5 0 0 3 .1 .05 3 0 .5", alike)
 }
 {
     side = $2

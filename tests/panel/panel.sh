@@ -3,9 +3,9 @@
 # worse by more than they scatter.
 #
 # mean, rms, worst, median, tenth, held, noise and claim are those of judge.c; specks,
-# grain, block, most and peak those of shown.c. said: the claim of the summary over the
-# truth, of RMS, median and tenth. power: absorbed over emitted. work: millions of tests.
-# All others are percent. Means over orders of faces; behind +- their deviation.
+# grain, block, most, peak and within those of shown.c. said: the claim of the summary
+# over the truth, of RMS, median and tenth. power: absorbed over emitted. work: millions
+# of tests. All others are percent. Means over orders of faces; behind +- their deviation.
 #
 # Knobs: SCENES, names of lines; CHECK=yes: those with an asterisk, as TAP against their
 # limits; PHR; ELEMENTS and SAMPLES of a truth, PATHS of a pixel, SIZE of a picture.
@@ -84,13 +84,16 @@ solved() {
     picture=""
     rm -f "$folder/solution.ply" "$folder/stats" "$folder/shown.pfm"
     ! is_shown || picture="--view $file.view --size ${SIZE}x$SIZE -o $folder/shown.pfm"
+    errors=$folder/shown.error.pfm
+    [ "$1" = after ] || errors=
+    picture="$picture${picture:+${errors:+ -o $errors}}"
     spent=$( ("$2" "$file.obj" --quiet $options --stats "$folder/stats" $picture \
         -o "$folder/solution.ply" >"$folder/log" 2>&1; times) | processor_seconds)
     [ -f "$folder/stats" ] || { echo "$name $1 $3 fails"; return; }
     set -- "$1" "$3" "$spent" $("$BUILD/judge" $sky "$file.obj" "$folder/solution.ply" \
         $by 2>>"$folder/log" || echo - - - - - - - - -)
-    set -- "$@" $([ -z "$picture" ] && echo - - - - - ||
-        "$BUILD/shown" "$folder/shown.pfm" ${shots-})
+    set -- "$@" $([ -z "$picture" ] && echo - - - - - - ||
+        "$BUILD/shown" "$folder/shown.pfm" ${shots:+$shots $errors})
     cat "$folder/stats" 2>"$folder/log" | awk -v head="$name $1 $2 $3" '
         function key(name) {
             if (!match($0, "\"" name "\": [-+.e0-9]*")) return "-"
@@ -120,7 +123,7 @@ factors() {
         awk -F, -v from="${want%,*}" -v to="${want#*,}" '$1 == from && $2 == to {
             print $4 }')
     echo "$name after 0 0 0 - - - - 1 $(of "100 * ($found / ${by#*=} - 1)")" \
-        "- - - - - - - - - - - -"
+        "- - - - - - - - - - - - -"
 }
 
 figures=$folder/figures

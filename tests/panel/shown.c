@@ -1,10 +1,10 @@
 /* Judges a picture of phr, a .pfm, for the panel (tests/panel/panel.sh).
  *
- *     shown PICTURE.pfm [TRUTH.pfm FIRST.pfm]
+ *     shown PICTURE.pfm [TRUTH.pfm FIRST.pfm [ERROR.pfm]]
  *
  * TRUTH is traced by N paths a pixel, FIRST by a quarter of these, which are the first of
- * the others: so the two differ by sqrt(3) deviations of TRUTH. Printed are, a dash for
- * what there is no truth of:
+ * the others: so the two differ by sqrt(3) deviations of TRUTH. ERROR has the standard
+ * errors of PICTURE. Printed are, a dash for what there is no truth of:
  *
  *     specks   pixels more than 5 codes off the median of their 3 x 3, where that is
  *              smooth: its middle five values lie within 4 codes
@@ -15,6 +15,7 @@
  *              and skies, blocks with a pixel 16 times the median one, do not count
  *     most     percent: the largest error of a block of 16 x 16 over its own light
  *     peak     W/m^2: the brightest band of a pixel
+ *     within   percent: blocks of 8 x 8 whose bands are within two standard errors
  *
  * Codes are those of a .png by the picture's own exposure. */
 #include <math.h>
@@ -25,6 +26,7 @@
 #include "io/picture/imagefile.h"
 #include "io/picture/tone.h"
 #include "io/scene/source.h"
+#include "tools/compare.h"
 
 enum { FINE = 8, COARSE = 16 };
 
@@ -157,11 +159,11 @@ static double grain_of(const struct image *image)
 
 /* The RMS of the differences of blocks over the RMS of b, and the largest over a block's
  * own light. */
-struct difference {
+struct off {
     double rms, most;
 };
 
-static struct difference differ(const struct image *a, const struct image *b, int side)
+static struct off differ(const struct image *a, const struct image *b, int side)
 {
     double least = least_of_lamps(b);
     double squares = 0.0, light = 0.0, most = 0.0;
@@ -175,15 +177,16 @@ static struct difference differ(const struct image *a, const struct image *b, in
             if (truth > 0.0)
                 most = fmax(most, fabs(off) / truth);
         }
-    return (struct difference){light > 0.0 ? sqrt(squares / light) : 0.0, most};
+    return (struct off){light > 0.0 ? sqrt(squares / light) : 0.0, most};
 }
 
 int main(int argc, char **argv)
 {
-    struct image image[3] = {{0}};
+    struct image image[4] = {{0}};
     struct error error = {0};
-    bool good = argc == 2 || argc == 4 ||
-                error_set(&error, EXIT_USAGE, "usage: shown PICTURE [TRUTH FIRST]");
+    bool good = argc == 2 || argc == 4 || argc == 5 ||
+                error_set(&error, EXIT_USAGE,
+                          "usage: shown PICTURE [TRUTH FIRST [ERROR]]");
     for (int i = 1; good && i < argc; i++)
         good = read_image(&image[i - 1], argv[i], &error);
     if (good) {
@@ -191,7 +194,7 @@ int main(int argc, char **argv)
         struct tone tone = tone_make(tone_automatic(image[0].rgb, pixels));
         printf("%lld %.3g", (long long)count_specks(&image[0], &tone),
                100.0 * grain_of(&image[0]));
-        if (argc == 4) {
+        if (argc >= 4) {
             double noise = differ(&image[2], &image[1], FINE).rms;
             double block = differ(&image[0], &image[1], FINE).rms;
             printf(" %.3g %.3g",
@@ -203,11 +206,18 @@ int main(int argc, char **argv)
         double peak = 0.0;
         for (int64_t i = 0; i < 3 * pixels; i++)
             peak = fmax(peak, (double)image[0].rgb[i]);
-        printf(" %.3g\n", peak);
+        printf(" %.3g", peak);
+        if (argc == 5) {
+            struct deviations off = compare_errors(&image[1], &image[0], &image[3], FINE,
+                                                   HUGE_VAL, 2.0, NULL);
+            printf(" %.3g\n", 100.0 - 100.0 * (double)off.beyond / (double)off.blocks);
+        } else {
+            printf(" -\n");
+        }
     } else {
         fprintf(stderr, "shown: %s\n", error.text);
     }
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4; i++)
         alloc_free(image[i].rgb);
     return error.code;
 }
