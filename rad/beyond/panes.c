@@ -116,20 +116,11 @@ void panes_cross(const struct panes *panes, struct pane_walk walk,
     }
 }
 
-bool pane_is_aimed_at(const struct panes *panes, int32_t root, struct vec3 x)
-{
-    struct triangle pane = scene_root_triangle(panes->scene, root);
-    struct vec3 apart = vec3_sub(triangle_centroid(&pane), x);
-    return rgb_sum(panes->sent[root]) > 0.0 &&
-           vec3_dot(apart, apart) >= scene_root_area(panes->scene, root);
-}
-
 bool panes_put_aside(const struct panes *panes, struct pane_walk walk, int32_t but,
                      struct octree_counts *counts)
 {
-    struct vec3 x = walk.at;
     while (panes_next(panes, &walk, counts))
-        if (walk.root != but && pane_is_aimed_at(panes, walk.root, x))
+        if (walk.root != but && rgb_sum(panes->sent[walk.root]) > 0.0)
             return true;
     return false;
 }

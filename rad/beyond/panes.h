@@ -61,11 +61,8 @@ void panes_cross(const struct panes *panes, struct pane_walk walk,
 int32_t pane_leaf(const struct forest *forest, const struct pane_walk *walk,
                   double weight[3]);
 
-/* True if a root of a pane is aimed at from x: from beside it rays find it. */
-bool pane_is_aimed_at(const struct panes *panes, int32_t root, struct vec3 x);
-
-/* True if the walk crosses a pane aimed at other than that of the root `but`, which may
- * be -1. */
+/* True if the walk crosses a pane aimed at, as all are that send light, other than that
+ * of the root `but`, which may be -1. */
 bool panes_put_aside(const struct panes *panes, struct pane_walk walk, int32_t but,
                      struct octree_counts *counts);
 

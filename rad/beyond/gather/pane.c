@@ -26,15 +26,6 @@ bool receiver_puts_aside(struct receiver *r, struct pane_walk walk, int32_t but)
     return panes_put_aside(g->aims->panes, walk, but, &g->model->counts);
 }
 
-bool receiver_may_find(struct receiver *r, struct pane_walk walk,
-                       const struct senders *senders, int32_t sender)
-{
-    if (!senders->sent)
-        return !receiver_puts_aside(r, walk, -1);
-    return pane_is_aimed_at(r->gather->aims->panes, sender, walk.at) &&
-           !receiver_puts_aside(r, walk, sender);
-}
-
 void receiver_filter(struct receiver *r, struct pane_walk walk, struct rgb *weight)
 {
     panes_filter(r->gather->aims->panes, walk, weight, &r->gather->model->counts);

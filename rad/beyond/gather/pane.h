@@ -14,11 +14,6 @@ struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
  * or -1. */
 bool receiver_puts_aside(struct receiver *r, struct pane_walk walk, int32_t but);
 
-/* True if a segment may bring the light of a sender: no pane on its way does so, and the
- * sender, if a pane, is aimed at from where the walk begins. */
-bool receiver_may_find(struct receiver *r, struct pane_walk walk,
-                       const struct senders *senders, int32_t sender);
-
 /* Multiplies the weight of light by the transmittances of all panes on its way. */
 void receiver_filter(struct receiver *r, struct pane_walk walk, struct rgb *weight);
 

@@ -178,7 +178,7 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
 {
     struct rgb weight = {{1.0, 1.0, 1.0}};
     struct pane_walk walk = pane_walk_to(point_above(x, r->facet.plane.normal), y);
-    if (!receiver_may_find(r, walk, senders, patch))
+    if (receiver_puts_aside(r, walk, senders->sent ? patch : -1))
         return;
     if (senders->sent) {
         see_through(r, x, y, factor, seed);

@@ -102,7 +102,7 @@ static void aim_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
     struct rgb light = *weight;
     if (g->aims->panes) {
         struct pane_walk walk = pane_walk_to(point_above(x, normal), y);
-        if (!receiver_may_find(r, walk, cuts->senders, sender.patch))
+        if (receiver_puts_aside(r, walk, pane ? sender.patch : -1))
             return;
         if (pane) {
             add_behind_pane(r, walk, weight, factor * sender.share);
