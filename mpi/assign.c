@@ -44,6 +44,12 @@ static int compare_items(const void *left, const void *right)
     return a->number < b->number ? -1 : 1;
 }
 
+/* The rank with the smaller load, of equal ones the lower. */
+static int lighter(const int64_t *loads, int a, int b)
+{
+    return loads[a] != loads[b] ? (loads[a] < loads[b] ? a : b) : a < b ? a : b;
+}
+
 void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
 {
     struct weighted *items = alloc_array((size_t)count, sizeof *items);
@@ -51,13 +57,16 @@ void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
         items[i] = (struct weighted){weights[i], i};
     qsort(items, (size_t)count, sizeof *items, compare_items);
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
+    int *least = alloc_array(2 * (size_t)ranks, sizeof *least);
+    for (int k = 2 * ranks - 1; k > 0; k--) /* a tree: of 2k and 2k + 1 the lighter */
+        least[k] = k >= ranks ? k - ranks : lighter(loads, least[2 * k], least[2 * k + 1]);
     for (int32_t i = 0; i < count; i++) {
-        int least = 0;
-        for (int r = 1; r < ranks; r++)
-            least = loads[r] < loads[least] ? r : least;
-        owner[items[i].number] = least;
-        loads[least] += items[i].weight;
+        int rank = owner[items[i].number] = least[1];
+        loads[rank] += items[i].weight;
+        for (int k = (ranks + rank) / 2; k > 0; k /= 2)
+            least[k] = lighter(loads, least[2 * k], least[2 * k + 1]);
     }
+    alloc_free(least);
     alloc_free(loads);
     alloc_free(items);
 }
