@@ -176,6 +176,8 @@ struct sender_part {
     double size;      /* of its edges, those of the patch being 1, times how much steeper
                          B is over the part; below 0 upside down */
     double steep[3];  /* over child k B is steeper by this factor, 1 */
+    struct gather_slope slope; /* of B over the patch */
+    triangle_factor *factor;   /* that is taken to it */
 };
 
 /* Towards an edge B is ever steeper, from a child leading up to its own such child. */
@@ -193,32 +195,22 @@ static struct sender_part part_child(const struct sender_part *part, int k)
     return child;
 }
 
-static double factor_to(const struct receiver *r, const struct triangle *sender)
+static double factor_to(const struct receiver *r, const struct sender_part *part)
 {
-    int64_t *work = &r->gather->model->estimating;
-    const struct vec3 normal = r->facet.plane.normal;
-    return r->gather->sums->sharp ? near_factor(&r->facet.triangle, normal, sender, work)
-                                  : mean_factor(&r->facet.triangle, normal, sender, work);
-}
-
-/* The slope of a patch in an exact row. */
-static struct gather_slope exact_slope(const struct receiver *r, int32_t patch)
-{
-    const struct final_gather *g = r->gather;
-    return slope_of(g->model->forest, g->cut, patch,
-                    &g->lit[node_space(g->model, patch)].scale);
+    return part->factor(&r->facet.triangle, r->facet.plane.normal, &part->triangle,
+                        &r->gather->model->estimating);
 }
 
 /* Adds a part whose factor is known as a whole. */
 static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
     double w[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, at[3];
-    struct gather_slope slope = exact_slope(r, part->patch);
-    if (slope.rise != 0.0)
+    if (part->slope.rise != 0.0)
         place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
-    receiver_add_point(r, part->patch, &slope, at, &(struct rgb){{factor, factor, factor}});
+    receiver_add_point(r, part->patch, &part->slope, at,
+                       &(struct rgb){{factor, factor, factor}});
 }
 
 /* Adds the exact factors to a part of a leaf, or to its quarters. */
@@ -231,50 +223,50 @@ static void add_part(struct receiver *r, const struct sender_part *part, double 
     }
     for (int k = 0; k < 4; k++) {
         struct sender_part child = part_child(part, k);
-        double of_child = factor_to(r, &child.triangle);
+        double of_child = factor_to(r, &child);
         if (of_child > 0.0)
             add_part(r, &child, 0.5 * range, of_child, quarterings - 1);
     }
 }
 
 /* Sets how much steeper B gets over the children of a leaf. */
-static void part_set_steepness(struct sender_part *part, const struct forest *forest,
-                               const struct gather_slope *slope)
+static void part_set_steepness(struct sender_part *part, const struct forest *forest)
 {
-    double mean = 0.0;
+    const struct rgb *b = forest->radiosity + part->slope.first;
+    double mean = rgb_sum(b[0]) / 3.0 + rgb_sum(b[1]) / 3.0 + rgb_sum(b[2]) / 3.0;
     for (int k = 0; k < 3; k++)
-        mean += rgb_sum(forest->radiosity[slope->first + k]) / 3.0;
-    for (int k = 0; k < 3; k++)
-        if (rgb_sum(forest->radiosity[slope->first + k]) > mean)
-            part->steep[k] = slope->steep;
+        if (rgb_sum(b[k]) > mean)
+            part->steep[k] = part->slope.steep;
 }
 
 /* Adds the exact factor to a patch, or to its leaves where B varies. */
-static void add_sender(struct receiver *r, int32_t patch)
+static void add_sender(struct receiver *r, int32_t patch, triangle_factor *by)
 {
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct sender_part whole = {.patch = patch,
-                         .triangle = forest_triangle(forest, patch),
-                         .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
-                         .size = 1.0,
-                         .steep = {1.0, 1.0, 1.0}};
-    double factor = factor_to(r, &whole.triangle);
+                                .triangle = forest_triangle(forest, patch),
+                                .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
+                                .size = 1.0,
+                                .steep = {1.0, 1.0, 1.0},
+                                .factor = by};
+    double factor = factor_to(r, &whole);
     if (!(factor > 0.0))
         return;
     uint32_t root = forest->patches[patch].id.root;
     whole.normal = scene_root_plane(forest->scene, (int32_t)root).normal;
+    whole.slope = slope_of(forest, g->cut, patch,
+                           &g->lit[node_space(g->model, patch)].scale);
     if (patch_is_leaf(&forest->patches[patch])) {
-        struct gather_slope slope = exact_slope(r, patch);
-        if (slope.rise != 0.0)
-            part_set_steepness(&whole, forest, &slope);
-        add_part(r, &whole, slope.range, factor, QUARTERINGS);
+        if (whole.slope.rise != 0.0)
+            part_set_steepness(&whole, forest);
+        add_part(r, &whole, whole.slope.range, factor, QUARTERINGS);
     } else if (!is_to_be_split(r, &whole.triangle, factor,
                                (double)g->sums->ranges[patch])) {
         add_whole(r, &whole, factor);
     } else {
         for (int k = 0; k < 4; k++)
-            add_sender(r, forest->patches[patch].children + k);
+            add_sender(r, forest->patches[patch].children + k, by);
     }
 }
 
@@ -329,12 +321,10 @@ bool receiver_add_exact(struct receiver *r)
         double off = fabs(sum_of_row(g->sums) - 1.0);
         if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
             break;
-        g->sums->sharp = turn > 0;
         g->sums->count = 0;
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
         for (int64_t i = 0; i < view->count; i++)
-            add_sender(r, view->faced[i]);
+            add_sender(r, view->faced[i], turn > 0 ? near_factor : mean_factor);
     }
-    g->sums->sharp = false;
     return close_row(r);
 }

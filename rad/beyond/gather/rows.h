@@ -29,7 +29,6 @@ struct gather_sums {
     struct gather_sum *items; /* [count] */
     int64_t count, capacity;
     int64_t first;   /* of the sums open to additions */
-    bool sharp;      /* factors of near triangles are in closed form */
     float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
                         in the band of the largest range, scaled, W/m^2 */
     int32_t *latest; /* [forest->count] by place: where the latest sum of the place is,
