@@ -173,25 +173,18 @@ struct sender_part {
     struct triangle triangle;
     struct vec3 normal;
     double centre[3]; /* barycentric coordinates in the patch */
-    double size;      /* of its edges, those of the patch being 1, times how much steeper
-                         B is over the part; below 0 upside down */
-    double steep[3];  /* over child k B is steeper by this factor, 1 */
+    double size;      /* of its edges, those of the patch being 1; below 0 upside down */
     struct gather_slope slope; /* of B over the patch */
     triangle_factor *factor;   /* that is taken to it */
 };
 
-/* Towards an edge B is ever steeper, from a child leading up to its own such child. */
 static struct sender_part part_child(const struct sender_part *part, int k)
 {
     struct sender_part child = *part;
-    double steep = k == 3 ? 1.0 : part->steep[k];
     child.triangle = triangle_child(&part->triangle, k);
     child.size = k == 3 ? -0.5 * part->size : 0.5 * part->size;
     for (int j = 0; j < 3 && k < 3; j++)
         child.centre[j] += child.size * ((j == k ? 1.0 : 0.0) - 1.0 / 3.0);
-    child.size *= steep;
-    for (int j = 0; j < 3 && steep == 1.0; j++)
-        child.steep[j] = 1.0;
     return child;
 }
 
@@ -229,16 +222,6 @@ static void add_part(struct receiver *r, const struct sender_part *part, double 
     }
 }
 
-/* Sets how much steeper B gets over the children of a leaf. */
-static void part_set_steepness(struct sender_part *part, const struct forest *forest)
-{
-    const struct rgb *b = forest->radiosity + part->slope.first;
-    double mean = rgb_sum(b[0]) / 3.0 + rgb_sum(b[1]) / 3.0 + rgb_sum(b[2]) / 3.0;
-    for (int k = 0; k < 3; k++)
-        if (rgb_sum(b[k]) > mean)
-            part->steep[k] = part->slope.steep;
-}
-
 /* Adds the exact factor to a patch, or to its leaves where B varies. */
 static void add_sender(struct receiver *r, int32_t patch, triangle_factor *by)
 {
@@ -248,7 +231,6 @@ static void add_sender(struct receiver *r, int32_t patch, triangle_factor *by)
                                 .triangle = forest_triangle(forest, patch),
                                 .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
                                 .size = 1.0,
-                                .steep = {1.0, 1.0, 1.0},
                                 .factor = by};
     double factor = factor_to(r, &whole);
     if (!(factor > 0.0))
@@ -258,8 +240,6 @@ static void add_sender(struct receiver *r, int32_t patch, triangle_factor *by)
     whole.slope = slope_of(forest, g->cut, patch,
                            &g->lit[node_space(g->model, patch)].scale);
     if (patch_is_leaf(&forest->patches[patch])) {
-        if (whole.slope.rise != 0.0)
-            part_set_steepness(&whole, forest);
         add_part(r, &whole, whole.slope.range, factor, QUARTERINGS);
     } else if (!is_to_be_split(r, &whole.triangle, factor,
                                (double)g->sums->ranges[patch])) {

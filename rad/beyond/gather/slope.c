@@ -26,11 +26,6 @@
 
 #include <math.h>
 
-/* Largest ratio of the slope of B over a leaf to the slope over its parent: the square
- * root of the distance from an edge makes 1.41, and links are not right enough there to
- * tell more. */
-static const double STEEPEST = 1.5;
-
 static const double BENT = 0.002;
 
 /* Where B is smooth, the error of a bend over a child is the part FALL of the error over
@@ -67,41 +62,6 @@ static double slope_part(const struct rgb *b, struct rgb middle)
     return part > 0.0 ? part : 0.0;
 }
 
-/* The mean of the outer children of a patch, over all bands; `off`, [3], becomes their
- * differences from this mean. */
-static double outer_mean(const struct forest *forest, int32_t patch, double *off)
-{
-    const struct rgb *b = forest->radiosity + forest->patches[patch].children;
-    double mean = (rgb_sum(b[0]) + rgb_sum(b[1]) + rgb_sum(b[2])) / 3.0;
-    for (int k = 0; k < 3; k++)
-        off[k] = rgb_sum(b[k]) - mean;
-    return mean;
-}
-
-/* B rises ever more steeply to an edge where surfaces meet. Returns the ratio of its slope
- * over the parent to its slope over the grandparent, if both lead up to the leaf, else 1.
- * The slope over the leaf is steeper again by this ratio, if B stays above 0. */
-static double steepening(const struct forest *forest, int32_t leaf)
-{
-    const struct patch *patches = forest->patches;
-    int32_t parent = patches[leaf].parent, above = patches[parent].parent;
-    int k = leaf - patches[parent].children;
-    int j = above < 0 ? 3 : parent - patches[above].children;
-    double fine[3], wide[3], along = 0.0, square = 0.0, low = 0.0;
-    if (k == 3 || j == 3)
-        return 1.0;
-    double b = outer_mean(forest, parent, fine) + fine[k];
-    outer_mean(forest, above, wide);
-    for (int i = 0; i < 3; i++) {
-        along += 2.0 * fine[i] * wide[i];
-        square += wide[i] * wide[i];
-        low = fmin(low, fine[i]);
-    }
-    if (!(fine[k] > 0.0 && wide[j] > 0.0 && along > square))
-        return 1.0;
-    return fmin(fmin(along / square, STEEPEST), fmax(1.0, b / -low));
-}
-
 struct gather_slope slope_of(const struct forest *forest, const uint8_t *cut,
                              int32_t patch, const struct rgb *scale)
 {
@@ -122,10 +82,6 @@ struct gather_slope slope_of(const struct forest *forest, const uint8_t *cut,
     if (slope.range > 0.0)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
-    slope.steep = 1.0;
-    if (scale && leaf && slope.rise != 0.0)
-        slope.steep = steepening(forest, patch);
-    slope.rise *= slope.steep;
     return slope;
 }
 
@@ -138,7 +94,7 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch)
     if (grandparent < 0 || k == 3)
         return light;
     int32_t first = patches[grandparent].children;
-    double s = parent == first + 3 ? -1.0 : steepening(forest, parent);
+    double s = parent == first + 3 ? -1.0 : 1.0;
     for (int c = 0; c < BANDS; c++) {
         for (int j = 0; j < 3; j++) {
             double w = j == k ? 2.0 / 3.0 : 1.0 / 6.0; /* of the patch's centroid */

@@ -7,19 +7,18 @@
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, made less where B would be below 0; 0: B is constant */
-    double steep;  /* slope over a child leading up, over the leaf's slope, 1 */
     double range;  /* largest difference of B from its value at the centre, over all
                       bands; in exact rows of one band, scaled, W/m^2 */
 };
 
 /* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over an
  * undivided root, and where the parent is cut (`cut`: see struct final_gather). `scale`:
- * factors of bands in exact rows, where B rises ever more to edges; else NULL. */
+ * factors of bands in exact rows; else NULL. */
 struct gather_slope slope_of(const struct forest *forest, const uint8_t *cut,
                              int32_t patch, const struct rgb *scale);
 
-/* Returns B of a patch by the linear function over its parent, as steep as in exact rows
- * at an edge, W/m^2. Pre: the patch has a parent. */
+/* Returns B of a patch by the linear function over its parent, W/m^2. Pre: the patch has
+ * a parent. */
 struct rgb light_by_parent(const struct forest *forest, int32_t patch);
 
 /* Returns how many times a leaf with an exact row is to be split: 0, or once if in any
