@@ -3,7 +3,9 @@
 #define TESTS_GATHERED_H
 
 #include "geom/lambert.h"
-#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/look.h"
+#include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "tests/defaults.h"
 
 struct trial {

@@ -10,6 +10,9 @@
 #include "compute.h"
 #include "geom/hash.h"
 #include "geom/lambert.h"
+#include "rad/beyond/gather/exact.h"
+#include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 

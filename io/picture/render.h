@@ -5,7 +5,7 @@
 #include "geom/progress.h"
 #include "io/scene/camera.h"
 #include "io/picture/shading.h"
-#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/row.h"
 
 /* The sources of the light in a picture: the mesh, a final gather, or both. */
 struct renderer {

@@ -17,6 +17,7 @@
 #include "geom/stop.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
+#include "rad/beyond/gather/exact.h"
 
 enum { ROUNDS = 6 };
 

@@ -255,9 +255,7 @@ static void claim(struct gathering *g, const struct rgb *b, double remaining,
     const size_t count = (size_t)g->equation.count, bytes = sizeof *b;
     struct rgb *mesh = alloc_array(4 * count, bytes), *rays = mesh + count;
     struct rgb *halves = rays + count, *segments = halves + count;
-    for (size_t i = 0; i < count; i++)
-        g->equation.radiosity[equation_place(&g->equation, (int64_t)i)] = b[i];
-    final_gather_pull(g->gather, g->equation.radiosity);
+    equation_set(&g->equation, b);
     claim_by_mesh(&g->equation, own_values(g));
     share_values(g, mesh);
     claim_find_changes(&g->equation, own_values(g));

@@ -17,7 +17,7 @@
  *
  * Rays meeting a lamp count its reflected light and not its emission. A ray meeting a
  * bright patch aimed at is put aside (rays.c). */
-#include "rad/beyond/gather/receiver.h"
+#include "rad/beyond/gather/aim.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,7 +26,8 @@
 #include "geom/hash.h"
 #include "geom/lambert.h"
 #include "rad/beyond/gather/factor.h"
-#include "rad/beyond/gather/met.h"
+#include "rad/beyond/gather/path.h"
+#include "rad/beyond/gather/source.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -320,7 +321,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             continue;
         }
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
-        for (int c = 0; c < BANDS && none && !r->looks; c++) {
+        for (int c = 0; c < BANDS && none && r->kind != RECEIVER_LOOK; c++) {
             double h = direct * light.band[c] / rgb_sum(light);
             around.band[c] += h * h / count * share * (1.0 - share);
         }

@@ -5,11 +5,12 @@
  * above the leaf find other faces in its plane, as of a picture on a wall. Pictures take
  * narrow gaps for covered, too, as behind the frame of a window: a ray ending in one has
  * begun there if the upright ray ends there as well. */
-#include "rad/beyond/gather/met.h"
+#include "rad/beyond/gather/covers.h"
 
 #include <math.h>
 
 #include "rad/beyond/gather/inside.h"
+#include "rad/beyond/gather/met.h"
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 
@@ -57,8 +58,7 @@ static bool is_inside(struct receiver *r, struct vec3 origin)
 bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     bool single = false;
-    return r->sums->on_back &&
-           ray_is_bound(r->gather->model, origin, direction, &single) &&
+    return ray_is_bound(r->gather->model, origin, direction, &single) &&
            is_inside(r, origin);
 }
 

@@ -38,6 +38,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "rad/beyond/gather/row.h"
 
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
@@ -132,6 +133,40 @@ double equation_shining_area(const struct equation *e, int64_t leaf)
 
 /* --- what rows see --- */
 
+/* The pull: inner patches get the mean of their leaves, by the visible shares of these,
+ * and patches without a visible share get B of their parents, unless a thing is across
+ * these: slopes between neighbours do not know of others. By place. */
+static void pull(const struct final_gather *gather, struct rgb *radiosity)
+{
+    const struct forest *forest = gather->model->forest;
+    const double *seen = gather->near->seen;
+    for (int64_t i = forest->count - 1; i >= 0; i--) {
+        const struct patch *patch = &forest->patches[gather->order[i]];
+        if (patch_is_leaf(patch) || !(seen[i] > 0.0))
+            continue;
+        for (int c = 0; c < BANDS; c++) {
+            double sum = 0.0;
+            for (int k = 0; k < 4; k++) {
+                int32_t child = gather->place[patch->children + k];
+                sum += seen[child] * radiosity[child].band[c];
+            }
+            radiosity[i].band[c] = 0.25 * sum / seen[i];
+        }
+    }
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t parent = forest->patches[gather->order[i]].parent;
+        if (!(seen[i] > 0.0) && parent >= 0 && !(gather->cut && gather->cut[parent]))
+            radiosity[i] = radiosity[gather->place[parent]];
+    }
+}
+
+void equation_set(struct equation *e, const struct rgb *b)
+{
+    for (int64_t i = 0; i < e->count; i++)
+        e->radiosity[equation_place(e, i)] = b[i];
+    pull(e->gather, e->radiosity);
+}
+
 void equation_show(struct equation *e, const struct rgb *b, bool lamps)
 {
     for (int64_t i = 0; i < e->count; i++) {
@@ -148,7 +183,7 @@ void equation_show(struct equation *e, const struct rgb *b, bool lamps)
         for (int c = 0; c < BANDS; c++)
             e->radiosity[equation_place(e, e->near[k].leaf)].band[c] *=
                 e->near[k].shown.band[c];
-    final_gather_pull(e->gather, e->radiosity);
+    pull(e->gather, e->radiosity);
 }
 
 void equation_show_means(struct equation *e, const struct rgb *b)
@@ -160,8 +195,17 @@ void equation_show_means(struct equation *e, const struct rgb *b)
 
 void equation_add_near(const struct equation *e, int64_t *watts)
 {
-    for (int64_t row = 0; row < e->gather->count; row++)
-        final_gather_add_near(e->gather, row, e->radiosity, watts);
+    const struct final_gather *gather = e->gather;
+    for (int64_t row = 0, i = 0; row < gather->count; row++) {
+        double area = forest_area(gather->model->forest, gather->rows[row].leaf);
+        for (; i < gather->rows[row].end; i++) {
+            const struct gather_term *term = &gather->terms[i];
+            for (int c = 0; c < BANDS && term->near >= 0; c++)
+                watts[BANDS * term->near + c] += gather_units(
+                    area * (double)term->weight[c] * e->radiosity[term->place].band[c],
+                    gather->near->unit_watts);
+        }
+    }
 }
 
 void equation_set_shown(struct equation *e, const int64_t *watts)

@@ -9,6 +9,7 @@
 #define RAD_BEYOND_GATHER_EQUATION_H
 
 #include "rad/beyond/gather/mesh.h"
+#include "rad/beyond/gather/rows.h"
 
 /* A leaf too near for some. */
 struct too_near {
@@ -71,6 +72,10 @@ void equation_number_near(struct equation *e);
 
 /* Finds the visible shares of patches. Pre: e->covers are of all rows. */
 void equation_find_seen(struct equation *e);
+
+/* Makes e->radiosity the radiosities `b`, by leaf, and the means of these over inner
+ * patches. */
+void equation_set(struct equation *e, const struct rgb *b);
 
 /* Makes e->radiosity what rows see of the radiosities `b`, by leaf: of leaves partly
  * inside of things the part outside, which receives all their light; of leaves too near

@@ -9,15 +9,14 @@
  *
  * Rejected: exact factors to senders open to a leaf and rays for the rest. Proofs for all
  * pairs cost more than the rays saved. */
-#include "rad/beyond/gather/gather.h"
-#include "rad/beyond/gather/met.h"
-#include "rad/beyond/gather/factor.h"
-#include "rad/beyond/gather/receiver.h"
-#include "rad/beyond/sample.h"
+#include "rad/beyond/gather/exact.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "rad/beyond/gather/covers.h"
+#include "rad/beyond/gather/factor.h"
+#include "rad/beyond/sample.h"
 
 /* A root has exact rows only if it faces at most this many roots for each ray. */
 enum { FACED_PER_RAY = 4 };
@@ -266,7 +265,6 @@ static bool close_row(struct receiver *r)
     double sum = sum_of_row(sums);
     bool partial = sum > 0.0 && sum < 1.0 - CLOSED;
     struct vec3 normal = r->facet.plane.normal, x = triangle_centroid(&r->facet.triangle);
-    r->sums->on_back = true;
     if (sum > 1.0 + CLOSED ||
         (partial && ray_comes_from_inside(r, point_above(x, normal), normal)))
         return false;

@@ -1,16 +1,10 @@
-/* The final gather: its rows, kept, and their products with radiosities.
- *
- * A row holds the form factors from a leaf to the leaves in its view, made by rays
- * (rays.c) or, where nothing is in the way, by exact factors (exact.c). */
+/* The scene of a final gather: what is the same for all rows. */
 #include "rad/beyond/gather/gather.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
 #include "rad/beyond/range.h"
-#include "rad/beyond/gather/receiver.h"
-#include "rad/beyond/sequence.h"
 
 /* A leaf is too near if the square of the length of a ray to it is less than this times
  * the leaf's area. (pi .1 = 1/3: see path_ends().) */
@@ -222,116 +216,15 @@ void final_gather_renew(struct final_gather *gather)
     }
 }
 
-/* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
-static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t near)
-{
-    struct gather_sums *sums = g->sums;
-    int32_t at = sums->latest[place];
-    if (at >= sums->first && at < sums->count && sums->items[at].place == place &&
-        sums->items[at].near == near)
-        return &sums->items[at];
-    RESERVE(sums->items, &sums->capacity, sums->count + 1);
-    sums->latest[place] = (int32_t)sums->count;
-    sums->items[sums->count] = (struct gather_sum){.place = place, .near = near};
-    return &sums->items[sums->count++];
-}
-
-void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
-{
-    struct final_gather *g = r->gather;
-    const struct rgb *b = &g->model->forest->radiosity[patch];
-    for (int c = 0; c < BANDS; c++)
-        r->light.band[c] += weight->band[c] * b->band[c];
-    if (!r->keeps)
-        return;
-    struct gather_sum *sum = sum_of(g, g->place[patch], r->near);
-    for (int c = 0; c < BANDS; c++)
-        sum->weight[c] += weight->band[c];
-}
-
-void receiver_add_point(struct receiver *r, int32_t patch,
-                        const struct gather_slope *slope, const double at[3],
-                        const struct rgb *weight)
-{
-    receiver_add_patch(r, patch, weight);
-    struct rgb steep = *weight, part;
-    for (int c = 0; c < BANDS; c++)
-        steep.band[c] *= slope->rise;
-    for (int k = 0; k < 3 && slope->rise != 0.0; k++) {
-        for (int c = 0; c < BANDS; c++)
-            part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
-        receiver_add_patch(r, slope->first + k, &part);
-    }
-}
-
 int64_t final_gather_work(const struct final_gather *gather)
 {
     const struct octree_counts *proofs = &gather->view->counts;
     return model_work(gather->model) + proofs->node_tests + proofs->triangle_tests;
 }
 
-int64_t final_gather_terms(const struct final_gather *gather)
-{
-    return gather->count > 0 ? gather->rows[gather->count - 1].end : 0;
-}
-
-/* --- public --- */
-
 int64_t gather_units(double value, double unit)
 {
     static const double MOST = 0x1p52;
     double units = unit > 0.0 ? real_max(-MOST, real_min(MOST, value / unit)) : 0.0;
     return (int64_t)(units < 0.0 ? units - 0.5 : units + 0.5);
-}
-
-void final_gather_add_near(const struct final_gather *gather, int64_t row,
-                           const struct rgb *radiosity, int64_t *watts)
-{
-    const struct gather_row *at = &gather->rows[row];
-    double area = forest_area(gather->model->forest, at->leaf);
-    for (int64_t i = row > 0 ? at[-1].end : 0; i < at->end; i++) {
-        const struct gather_term *term = &gather->terms[i];
-        if (term->near < 0)
-            continue;
-        for (int c = 0; c < BANDS; c++)
-            watts[BANDS * term->near + c] += gather_units(
-                area * (double)term->weight[c] * radiosity[term->place].band[c],
-                gather->near->unit_watts);
-    }
-}
-
-void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)
-{
-    const struct forest *forest = gather->model->forest;
-    const double *seen = gather->near->seen;
-    for (int64_t i = forest->count - 1; i >= 0; i--) {
-        const struct patch *patch = &forest->patches[gather->order[i]];
-        if (patch_is_leaf(patch) || !(seen[i] > 0.0))
-            continue;
-        for (int c = 0; c < BANDS; c++) {
-            double sum = 0.0;
-            for (int k = 0; k < 4; k++) {
-                int32_t child = gather->place[patch->children + k];
-                sum += seen[child] * radiosity[child].band[c];
-            }
-            radiosity[i].band[c] = 0.25 * sum / seen[i];
-        }
-    }
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t parent = forest->patches[gather->order[i]].parent;
-        if (!(seen[i] > 0.0) && parent >= 0 && !is_cut(gather, parent))
-            radiosity[i] = radiosity[gather->place[parent]];
-    }
-}
-
-struct rgb final_gather_irradiance(const struct final_gather *gather, int64_t row,
-                                   const struct rgb *radiosity, bool lamps)
-{
-    const struct gather_row *at = &gather->rows[row];
-    struct rgb h = lamps ? at->source : (struct rgb){{0.0, 0.0, 0.0}};
-    for (int64_t i = row > 0 ? at[-1].end : 0; i < at->end; i++)
-        for (int c = 0; c < BANDS; c++)
-            h.band[c] += (double)gather->terms[i].weight[c] *
-                         radiosity[gather->terms[i].place].band[c];
-    return h;
 }

@@ -8,30 +8,137 @@
 #ifndef RAD_BEYOND_GATHER_GATHER_H
 #define RAD_BEYOND_GATHER_GATHER_H
 
-#include "rad/beyond/gather/rows.h"
+#include "rad/beyond/gather/cuts.h"
+#include "rad/beyond/gather/lit.h"
+#include "rad/beyond/gather/slope.h"
 
-/* The mean irradiance of points, W/m^2. */
-struct gather_light {
-    struct rgb lamps; /* emission straight from lamps */
-    struct rgb rest;  /* all other light; 0 unless asked for */
-    struct rgb variance; /* of both, if segments and rays were chosen by chance,
-                            (W/m^2)^2 */
-    struct rgb halves;   /* a sample of the variance by the sequence: see struct
-                            gather_row */
-    bool by_chance;   /* few segments may agree by chance */
+/* A term of the row at hand, while it is summed. */
+struct gather_sum {
+    int32_t place, near;  /* as of a term */
+    double weight[BANDS]; /* a float would lose the sixth digit over thousands of rays */
 };
 
-/* A look at a leaf: the light of its quarters by a few rays, in the same directions. */
-struct gather_look {
-    float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
-    double noise;              /* variance of rho H of a quarter, by chance, from the mean
-                                  of all */
-    double variance;           /* of rho H of a ray with its segment, over bands,
-                                  (W/m^2)^2 */
-    double of_segment;         /* the segment's part of `variance` */
-    float fixed;               /* tests of a quarter, without its rays */
-    float work;                /* tests of each ray */
-    bool cut;                  /* a thing stands on the leaf */
+struct gather_sums {
+    struct gather_sum *items; /* [count] */
+    int64_t count, capacity;
+    int64_t first;   /* of the sums open to additions */
+    float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
+                        in the band of the largest range, scaled, W/m^2 */
+    int32_t *latest; /* [forest->count] by place: where the latest sum of the place is,
+                        if there is one */
+};
+
+/* A leaf at points met by rays too near for its mean to hold: their paths went on from
+ * there. */
+struct gather_near {
+    int64_t area;         /* of senders, each times the part of its rays meeting the leaf
+                             so: by reciprocity, the leaf's area times the part of its
+                             light going there */
+    int64_t watts[BANDS]; /* found there by the rays, emitted by lamps */
+};
+
+/* The path of a ray of the row at hand, from a leaf too near on. */
+struct gather_path {
+    int32_t place;    /* of the leaf */
+    struct rgb light; /* brought by lamps, times the ray's share of the row, W/m^2 */
+};
+
+/* A patch as met by rays. */
+struct gather_leaf {
+    struct vec3 middle; /* its centroid */
+    double reach2;      /* a ray shorter than the root of this meets the patch too near,
+                           square scene units */
+    struct gather_slope slope;
+};
+
+/* Sums over ranks, so of integers; and the patches as met by rays. */
+struct gather_nears {
+    struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
+                                  all ranks, once these are added up, by number */
+    struct gather_path *paths; /* [path_count] of the row at hand */
+    int64_t path_count, path_capacity;
+    double unit_area;          /* square scene units */
+    double unit_watts;         /* W in square scene units */
+    struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
+    double *seen; /* [forest->count] by place: shares outside of things, 1 */
+};
+
+/* Work of this rank. */
+struct gather_counts {
+    int64_t rays;           /* fired for first hits */
+    int64_t segments;       /* tested for blockers */
+    int64_t escaped;        /* rays out of the scene or to backs, from leaves with any
+                               front in view, and exact rows not summing to 1 */
+    int64_t exact;          /* rows made without rays */
+    int64_t crossed;        /* terms, and segments seen, from one space to another */
+};
+
+/* A root and the roots that it faces. */
+struct gather_view {
+    int32_t root;      /* -1: none yet */
+    bool open;         /* proved: nothing stands between the root and any of `faced` */
+    int32_t *faced;    /* [count], roots */
+    int64_t count, capacity;
+    uint8_t *overlapped; /* [roots] 2: by another root in the plane; 1: by none; 0:
+                            unknown */
+    struct octree_counts counts; /* of all proofs, made by each rank with a leaf of the
+                                    root */
+};
+
+/* A segment from a receiver to a sender. */
+struct shot {
+    struct vec3 x, y;
+    double kernel; /* 1 per square scene unit; 0: an end is below the other's horizon */
+};
+
+/* The light of a node of a cut at a receiver, with nothing in the way. */
+struct offer {
+    double worth;  /* by which segments are dealt, over all bands, W/m^2 */
+    double factor; /* the exact form factor of a single near sender, 1; else -1 */
+};
+
+/* Senders as targets of segments. */
+struct gather_aims {
+    struct senders *lamps;
+    struct senders *bright;    /* patches reflecting enough to be aimed at */
+    double *bright_part;       /* [lit_count()] their part of the light reflected in each
+                                  space, 1 */
+    struct panes *panes;       /* NULL: none */
+    struct senders *windows;   /* panes aimed at; NULL: there are no panes */
+    struct regions *regions;
+    struct cuts *lamp_cuts, *bright_cuts, *window_cuts;
+    struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
+    struct shot *shots;        /* [shot_capacity] room for those at a sender */
+    int64_t offer_capacity, shot_capacity;
+};
+
+/* The scene of a final gather, and the rows of this rank: rad/beyond/gather/rows.h. */
+struct final_gather {
+    struct model *model; /* borrowed; rays are counted there */
+    int rays;            /* from a leaf, in the mean */
+    struct lit *lit;     /* [lit_count()] */
+    const uint8_t *cut;  /* borrowed, [forest->count] 1: a thing stands on the patch or
+                            across it; NULL: on none */
+    int32_t *order;      /* [forest->count] patches as in forest_order() */
+    int32_t *place;      /* [forest->count] the place of each patch in `order` */
+    struct gather_aims *aims;
+    struct gather_view *view; /* of the root of the leaf at hand */
+    struct gather_nears *near;
+    struct gather_sums *sums;
+    struct gather_row *rows;   /* [count] */
+    struct gather_term *terms; /* of all rows, one after the other */
+    int64_t count, row_capacity, term_capacity;
+    struct gather_counts counts;
+};
+
+/* Points of one surface, near each other, as in a pixel. */
+struct gather_points {
+    const struct vec3 *at; /* [count] */
+    int count;
+    struct vec3 middle;
+    struct plane plane; /* of the surface, at the middle */
+    int32_t root;       /* under the points */
+    bool above;         /* the points lie a little above the root, which may hide lamps */
 };
 
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
@@ -50,49 +157,13 @@ void final_gather_destroy(struct final_gather *gather); /* NULL: none */
  * the forest and its leaves. To be called when these have changed. */
 void final_gather_renew(struct final_gather *gather);
 
-/* True if proofs show that nothing stands between a root and the roots that it faces:
- * then its leaves may have exact rows. Without `proof`: if no segment finds a blocker. */
-bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool proof);
-
-/* Looks at the quarters of a leaf, by `rays` rays each. */
-struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
-
-/* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
- * and its root is open, by exact factors. */
-void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
-                          int segments, bool exact);
-
-/* Returns the light at points, for the radiosities of the forest: by `count` segments to
- * lamps, and, if `all`, `count` rays for the rest. */
-struct gather_light final_gather_at(struct final_gather *gather,
-                                    const struct gather_points *points, uint64_t seed,
-                                    int count, bool all);
-
 /* The work of this rank so far, proofs included, in tests. */
 int64_t final_gather_work(const struct final_gather *gather);
-
-/* The number of terms of all rows. */
-int64_t final_gather_terms(const struct final_gather *gather);
-
-/* Forgets all rows, and leaves too near. */
-void final_gather_drop_rows(struct final_gather *gather);
 
 /* The integer of a value in units, bounded. */
 int64_t gather_units(double value, double unit);
 
-/* Adds the light of a row by way of leaves too near, W in square scene units, to `watts`,
- * by `near` of the terms and by band, in gather->near->unit_watts. */
-void final_gather_add_near(const struct final_gather *gather, int64_t row,
-                           const struct rgb *radiosity, int64_t *watts);
-
-/* The pull: inner patches get the mean of their leaves, by the visible shares of these,
- * and patches without a visible share get B of their parents, unless a thing is across
- * these: slopes between neighbours do not know of others. By place. */
-void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);
-
-/* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source
- * if `lamps`. */
-struct rgb final_gather_irradiance(const struct final_gather *gather, int64_t row,
-                                   const struct rgb *radiosity, bool lamps);
+/* Forgets all rows, and leaves too near. */
+void final_gather_drop_rows(struct final_gather *gather);
 
 #endif

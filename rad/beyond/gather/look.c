@@ -2,13 +2,14 @@
  *
  * A few rays from each quarter of a leaf, in the same directions, tell whether its light
  * varies, and with how much noise: by rays, and by segments to lamps. */
-#include "rad/beyond/gather/gather.h"
-#include "rad/beyond/gather/receiver.h"
+#include "rad/beyond/gather/look.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/gather/aim.h"
+#include "rad/beyond/gather/rays.h"
 #include "rad/beyond/sample.h"
 
 /* The variance by chance, over bands, common to the quarters: their rays have the same
@@ -60,9 +61,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     for (int k = 0; k < 4; k++) {
         struct gather_row row = {.leaf = leaf};
         struct ray_sums sums = {.each = each};
-        struct receiver r = receiver_of_leaf(gather, rays, &row, &sums);
+        struct receiver r = receiver_of_leaf(gather, RECEIVER_LOOK, rays, &row, &sums);
         r.seed = hash_mix(r.seed + 1);
-        r.looks = true;
         r.facet.triangle = triangle_child(&r.facet.triangle, k);
         r.facet.area *= 0.25;
         receiver_aim(&r);

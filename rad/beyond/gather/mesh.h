@@ -2,7 +2,7 @@
 #ifndef RAD_BEYOND_GATHER_MESH_H
 #define RAD_BEYOND_GATHER_MESH_H
 
-#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/look.h"
 
 /* The leaves with an area, in the order of forest_order(). */
 struct gather_mesh {

@@ -66,13 +66,4 @@ static inline enum met trace(struct receiver *r, struct vec3 origin,
     return met;
 }
 
-/* True if the first ray of a path comes from inside of a thing standing on the leaf.
- * Costs some rays, spent only where some ray of the leaf has met a back. */
-bool ray_comes_from_inside(struct receiver *r, struct vec3 origin,
-                           struct vec3 direction);
-
-/* True if a ray of a leaf from x ends at `end` in a gap narrow for the leaf. At an edge,
- * where surfaces meet, there is none. */
-bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end);
-
 #endif

@@ -6,12 +6,13 @@
  * ray ends far enough away: a path tracer for near surfaces, and radiosity for the rest.
  * In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
  * along all edges of a room. */
-#include "rad/beyond/gather/pane.h"
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
 
 #include "geom/hash.h"
+#include "rad/beyond/gather/pane.h"
+#include "rad/beyond/gather/source.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -80,7 +81,7 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
     if (bright < 0)
         return false;
     struct triangle t = forest_triangle(r->gather->model->forest, bright);
-    return !point_is_beside(x, &t) && (r->points || path_ends(r, met, x));
+    return !point_is_beside(x, &t) && (r->kind == RECEIVER_PIXEL || path_ends(r, met, x));
 }
 
 /* True if a segment from x, a point of a path, finds the bright patch at `met`, and a ray
@@ -91,7 +92,7 @@ static bool is_aimed_at_beside(const struct receiver *r, const struct point *met
 {
     const struct senders *bright = r->gather->aims->bright;
     int32_t patch = bright->part_of[met->patch];
-    if (!r->points || patch < 0)
+    if (r->kind != RECEIVER_PIXEL || patch < 0)
         return false;
     struct vec3 ray = vec3_sub(met->at, x);
     double sent = rgb_sum(sender_light(bright, patch));
@@ -103,7 +104,7 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                         const struct rgb *weight, uint64_t seed)
 {
     const struct senders *senders = r->gather->aims->bright;
-    if (!r->points || !(senders_power(senders) > 0.0))
+    if (r->kind != RECEIVER_PIXEL || !(senders_power(senders) > 0.0))
         return;
     struct choice bright = sender_choose(senders, senders->nodes, hash_unit(seed));
     struct facet facet = facet_make(r->gather->model->forest, bright.patch);

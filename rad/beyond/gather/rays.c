@@ -13,14 +13,16 @@
  * patch often enough, and factors of a few of its points would vary without bound.
  *
  * A ray ending too near goes on as a path (path.c). */
-#include "rad/beyond/gather/pane.h"
-#include "rad/beyond/gather/path.h"
+#include "rad/beyond/gather/rays.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/aim.h"
+#include "rad/beyond/gather/covers.h"
+#include "rad/beyond/gather/pane.h"
+#include "rad/beyond/gather/path.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -42,7 +44,7 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
     struct gather_nears *near = g->near;
-    if (!r->keeps) /* a look's leaves may have no places yet */
+    if (r->kind != RECEIVER_ROW) /* a look's leaves may have no places yet */
         return;
     r->near = g->place[met->patch];
     RESERVE(near->paths, &near->path_capacity, near->path_count + 1);
@@ -60,7 +62,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     const struct forest *forest = r->gather->model->forest;
     struct point point;
     enum met met = meet(r, origin, direction, &stream->hits[ray], &point);
-    if (ray_comes_from_inside(r, origin, direction)) {
+    if (r->sums->on_back && ray_comes_from_inside(r, origin, direction)) {
         r->sums->inside++;
         return;
     }
@@ -80,7 +82,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     }
     if (met != MET_FRONT)
         return;
-    r->sums->in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
+    r->sums->in_gap += r->kind == RECEIVER_ROW && ray_ends_in_gap(r, origin, point.at);
     find_leaf(forest, &point);
     if (path_is_aimed_at(r, &point, origin)) {
         r->sums->aside[half]++;
@@ -194,7 +196,8 @@ static void fill_stream(struct receiver *r, const struct sequence *sequence, int
         stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
     }
     octree_stream_hits(model->octree, stream, false, &model->counts);
-    r->sums->on_back = r->keeps && (r->sums->on_back || meets_backs(r, stream));
+    r->sums->on_back = r->kind == RECEIVER_ROW &&
+                       (r->sums->on_back || meets_backs(r, stream));
 }
 
 void receiver_fire(struct receiver *r)

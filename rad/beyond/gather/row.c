@@ -1,9 +1,12 @@
 /* Rows of leaves, by exact factors or by segments and rays, and the light at points. */
-#include "rad/beyond/gather/gather.h"
-#include "rad/beyond/gather/met.h"
+#include "rad/beyond/gather/row.h"
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
+#include "rad/beyond/gather/aim.h"
+#include "rad/beyond/gather/covers.h"
+#include "rad/beyond/gather/exact.h"
+#include "rad/beyond/gather/met.h"
+#include "rad/beyond/gather/rays.h"
 #include "rad/beyond/sequence.h"
 
 /* Makes the sums the terms of the row. */
@@ -24,26 +27,6 @@ static void keep_terms(struct receiver *r)
         g->counts.crossed +=
             several && node_space(g->model, g->order[term.place]) != space;
     }
-}
-
-/* A receiver on a patch. Rays beyond the points of a sequence would be the same. */
-static struct receiver receiver_make(struct final_gather *gather, struct facet facet,
-                                     uint64_t seed, int rays, struct gather_row *row,
-                                     struct ray_sums *sums)
-{
-    rays = rays < SEQUENCE_POINTS ? rays : SEQUENCE_POINTS;
-    return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
-                             .row = row, .sums = sums,
-                             .along = direction_along(facet.plane.normal), .rays = rays,
-                             .segments = rays, .near = -1};
-}
-
-struct receiver receiver_of_leaf(struct final_gather *gather, int rays,
-                                 struct gather_row *row, struct ray_sums *sums)
-{
-    const struct forest *forest = gather->model->forest;
-    uint64_t seed = hash_mix(id_number(forest->patches[row->leaf].id));
-    return receiver_make(gather, facet_make(forest, row->leaf), seed, rays, row, sums);
 }
 
 /* The irradiance straight from lamps, by an exact row. */
@@ -68,9 +51,8 @@ void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
 {
     struct gather_row row = {.leaf = leaf};
     struct ray_sums sums = {.each = NULL};
-    struct receiver r = receiver_of_leaf(gather, rays, &row, &sums);
+    struct receiver r = receiver_of_leaf(gather, RECEIVER_ROW, rays, &row, &sums);
     r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
-    r.keeps = true;
     gather->sums->count = gather->sums->first = 0;
     if (exact && receiver_add_exact(&r)) {
         row.lamps = light_of_lamps(&r);
@@ -90,17 +72,12 @@ struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
                                     int count, bool all)
 {
-    struct vec3 x = points->middle;
-    struct facet facet = {.triangle = {{x, x, x}},
-                          .plane = points->plane,
-                          .input = scene_input_of(gather->model->scene, points->root)};
-    struct point point = {.root = points->root, .at = x};
+    struct point point = {.root = points->root, .at = points->middle};
     find_leaf(gather->model->forest, &point);
     struct gather_row row = {.leaf = point.patch};
     struct ray_sums sums = {.each = NULL};
-    struct receiver r = receiver_make(gather, facet, hash_mix(seed), count, &row, &sums);
+    struct receiver r = receiver_of_points(gather, points, seed, count, &row, &sums);
     struct gather_light light;
-    r.points = points;
     r.lamps_alone = !all;
     receiver_aim(&r);
     if (all)

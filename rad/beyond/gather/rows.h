@@ -5,9 +5,7 @@
 #ifndef RAD_BEYOND_GATHER_ROWS_H
 #define RAD_BEYOND_GATHER_ROWS_H
 
-#include "rad/beyond/gather/cuts.h"
-#include "rad/beyond/gather/lit.h"
-#include "rad/beyond/gather/slope.h"
+#include "rad/beyond/gather/gather.h"
 
 /* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
  * differ from rank to rank, so a patch is named by its place in forest_order(), here as
@@ -17,22 +15,6 @@ struct gather_term {
     int32_t near;  /* the leaf too near met first by the ray: its place, or, once these
                       are numbered, its number; -1: none */
     float weight[BANDS];
-};
-
-/* A term of the row at hand, while it is summed. */
-struct gather_sum {
-    int32_t place, near;  /* as of a term */
-    double weight[BANDS]; /* a float would lose the sixth digit over thousands of rays */
-};
-
-struct gather_sums {
-    struct gather_sum *items; /* [count] */
-    int64_t count, capacity;
-    int64_t first;   /* of the sums open to additions */
-    float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
-                        in the band of the largest range, scaled, W/m^2 */
-    int32_t *latest; /* [forest->count] by place: where the latest sum of the place is,
-                        if there is one */
 };
 
 /* What covers a leaf: things standing on it, and faces in its plane. Shares, 1. */
@@ -57,117 +39,12 @@ struct gather_row {
     struct cover cover;
 };
 
-/* A leaf at points met by rays too near for its mean to hold: their paths went on from
- * there. */
-struct gather_near {
-    int64_t area;         /* of senders, each times the part of its rays meeting the leaf
-                             so: by reciprocity, the leaf's area times the part of its
-                             light going there */
-    int64_t watts[BANDS]; /* found there by the rays, emitted by lamps */
-};
+/* The number of terms of all rows. */
+int64_t final_gather_terms(const struct final_gather *gather);
 
-/* The path of a ray of the row at hand, from a leaf too near on. */
-struct gather_path {
-    int32_t place;    /* of the leaf */
-    struct rgb light; /* brought by lamps, times the ray's share of the row, W/m^2 */
-};
-
-/* A patch as met by rays. */
-struct gather_leaf {
-    struct vec3 middle; /* its centroid */
-    double reach2;      /* a ray shorter than the root of this meets the patch too near,
-                           square scene units */
-    struct gather_slope slope;
-};
-
-/* Sums over ranks, so of integers; and the patches as met by rays. */
-struct gather_nears {
-    struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
-                                  all ranks, once these are added up, by number */
-    struct gather_path *paths; /* [path_count] of the row at hand */
-    int64_t path_count, path_capacity;
-    double unit_area;          /* square scene units */
-    double unit_watts;         /* W in square scene units */
-    struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
-    double *seen; /* [forest->count] by place: shares outside of things, 1 */
-};
-
-/* Work of this rank. */
-struct gather_counts {
-    int64_t rays;           /* fired for first hits */
-    int64_t segments;       /* tested for blockers */
-    int64_t escaped;        /* rays out of the scene or to backs, from leaves with any
-                               front in view, and exact rows not summing to 1 */
-    int64_t exact;          /* rows made without rays */
-    int64_t crossed;        /* terms, and segments seen, from one space to another */
-};
-
-/* A root and the roots that it faces. */
-struct gather_view {
-    int32_t root;      /* -1: none yet */
-    bool open;         /* proved: nothing stands between the root and any of `faced` */
-    int32_t *faced;    /* [count], roots */
-    int64_t count, capacity;
-    uint8_t *overlapped; /* [roots] 2: by another root in the plane; 1: by none; 0:
-                            unknown */
-    struct octree_counts counts; /* of all proofs, made by each rank with a leaf of the
-                                    root */
-};
-
-/* A segment from a receiver to a sender. */
-struct shot {
-    struct vec3 x, y;
-    double kernel; /* 1 per square scene unit; 0: an end is below the other's horizon */
-};
-
-/* The light of a node of a cut at a receiver, with nothing in the way. */
-struct offer {
-    double worth;  /* by which segments are dealt, over all bands, W/m^2 */
-    double factor; /* the exact form factor of a single near sender, 1; else -1 */
-};
-
-/* Senders as targets of segments. */
-struct gather_aims {
-    struct senders *lamps;
-    struct senders *bright;    /* patches reflecting enough to be aimed at */
-    double *bright_part;       /* [lit_count()] their part of the light reflected in each
-                                  space, 1 */
-    struct panes *panes;       /* NULL: none */
-    struct senders *windows;   /* panes aimed at; NULL: there are no panes */
-    struct regions *regions;
-    struct cuts *lamp_cuts, *bright_cuts, *window_cuts;
-    struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
-    struct shot *shots;        /* [shot_capacity] room for those at a sender */
-    int64_t offer_capacity, shot_capacity;
-};
-
-/* The rows of this rank, and their scene. */
-struct final_gather {
-    struct model *model; /* borrowed; rays are counted there */
-    int rays;            /* from a leaf, in the mean */
-    struct lit *lit;     /* [lit_count()] */
-    const uint8_t *cut;  /* borrowed, [forest->count] 1: a thing stands on the patch or
-                            across it; NULL: on none */
-    int32_t *order;      /* [forest->count] patches as in forest_order() */
-    int32_t *place;      /* [forest->count] the place of each patch in `order` */
-    struct gather_aims *aims;
-    struct gather_view *view; /* of the root of the leaf at hand */
-    struct gather_nears *near;
-    struct gather_sums *sums;
-    struct gather_row *rows;   /* [count] */
-    struct gather_term *terms; /* of all rows, one after the other */
-    int64_t count, row_capacity, term_capacity;
-    struct gather_counts counts;
-};
-
-/* Points of one surface, near each other, as in a pixel. */
-struct gather_points {
-    const struct vec3 *at; /* [count] */
-    int count;
-    struct vec3 middle;
-    struct plane plane; /* of the surface, at the middle */
-    int32_t root;       /* under the points */
-    bool above;         /* the points lie a little above the root, which may hide lamps */
-};
+/* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source
+ * if `lamps`. */
+struct rgb final_gather_irradiance(const struct final_gather *gather, int64_t row,
+                                   const struct rgb *radiosity, bool lamps);
 
 #endif

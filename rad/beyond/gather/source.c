@@ -1,31 +1,11 @@
-/* The light of lamps as a source: what a receiver is given, what stands in the way, and
- * one segment from a point of a path beside it. */
-#include "rad/beyond/gather/pane.h"
+/* Segments to lamps: what stands in the way, and one from a point of a path. */
+#include "rad/beyond/gather/source.h"
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
+#include "rad/beyond/gather/pane.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
-
-void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
-                       double factor)
-{
-    struct gather_nears *near = r->gather->near;
-    for (int c = 0; c < BANDS && r->near >= 0; c++)
-        near->paths[near->path_count - 1].light.band[c] +=
-            weight->band[c] * factor * emission.band[c];
-}
-
-void receiver_add_source(struct receiver *r, const struct rgb *weight,
-                         struct rgb emission, double factor)
-{
-    receiver_add_near(r, weight, emission, factor);
-    for (int c = 0; c < BANDS; c++) {
-        double h = weight->band[c] * factor * emission.band[c];
-        r->row->source.band[c] += h;
-        r->light.band[c] += h;
-    }
-}
 
 /* The triangle blocking a segment to a sender, or -1. */
 static inline int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,

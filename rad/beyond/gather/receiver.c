@@ -1,0 +1,105 @@
+/* A receiver: a leaf, or points of a pixel. Light of the mesh is added to its terms,
+ * light of lamps to its source, and both to the light of the ray at hand. */
+#include "rad/beyond/gather/receiver.h"
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "rad/beyond/sample.h"
+
+/* A receiver on a patch. Rays beyond the points of a sequence would be the same. */
+static struct receiver receiver_make(struct final_gather *gather, enum receiver_kind kind,
+                                     struct facet facet, uint64_t seed, int rays,
+                                     struct gather_row *row, struct ray_sums *sums)
+{
+    rays = rays < SEQUENCE_POINTS ? rays : SEQUENCE_POINTS;
+    return (struct receiver){.kind = kind, .gather = gather, .facet = facet,
+                             .seed = seed, .row = row, .sums = sums,
+                             .along = direction_along(facet.plane.normal), .rays = rays,
+                             .segments = rays, .near = -1};
+}
+
+struct receiver receiver_of_leaf(struct final_gather *gather, enum receiver_kind kind,
+                                 int rays, struct gather_row *row, struct ray_sums *sums)
+{
+    const struct forest *forest = gather->model->forest;
+    uint64_t seed = hash_mix(id_number(forest->patches[row->leaf].id));
+    return receiver_make(gather, kind, facet_make(forest, row->leaf), seed, rays, row,
+                         sums);
+}
+
+struct receiver receiver_of_points(struct final_gather *gather,
+                                   const struct gather_points *points, uint64_t seed,
+                                   int rays, struct gather_row *row,
+                                   struct ray_sums *sums)
+{
+    struct vec3 x = points->middle;
+    struct facet facet = {.triangle = {{x, x, x}},
+                          .plane = points->plane,
+                          .input = scene_input_of(gather->model->scene, points->root)};
+    struct receiver r = receiver_make(gather, RECEIVER_PIXEL, facet, hash_mix(seed), rays,
+                                      row, sums);
+    r.points = points;
+    return r;
+}
+
+/* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
+static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t near)
+{
+    struct gather_sums *sums = g->sums;
+    int32_t at = sums->latest[place];
+    if (at >= sums->first && at < sums->count && sums->items[at].place == place &&
+        sums->items[at].near == near)
+        return &sums->items[at];
+    RESERVE(sums->items, &sums->capacity, sums->count + 1);
+    sums->latest[place] = (int32_t)sums->count;
+    sums->items[sums->count] = (struct gather_sum){.place = place, .near = near};
+    return &sums->items[sums->count++];
+}
+
+void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
+{
+    struct final_gather *g = r->gather;
+    const struct rgb *b = &g->model->forest->radiosity[patch];
+    for (int c = 0; c < BANDS; c++)
+        r->light.band[c] += weight->band[c] * b->band[c];
+    if (r->kind != RECEIVER_ROW)
+        return;
+    struct gather_sum *sum = sum_of(g, g->place[patch], r->near);
+    for (int c = 0; c < BANDS; c++)
+        sum->weight[c] += weight->band[c];
+}
+
+void receiver_add_point(struct receiver *r, int32_t patch,
+                        const struct gather_slope *slope, const double at[3],
+                        const struct rgb *weight)
+{
+    receiver_add_patch(r, patch, weight);
+    struct rgb steep = *weight, part;
+    for (int c = 0; c < BANDS; c++)
+        steep.band[c] *= slope->rise;
+    for (int k = 0; k < 3 && slope->rise != 0.0; k++) {
+        for (int c = 0; c < BANDS; c++)
+            part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
+        receiver_add_patch(r, slope->first + k, &part);
+    }
+}
+
+void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                       double factor)
+{
+    struct gather_nears *near = r->gather->near;
+    for (int c = 0; c < BANDS && r->near >= 0; c++)
+        near->paths[near->path_count - 1].light.band[c] +=
+            weight->band[c] * factor * emission.band[c];
+}
+
+void receiver_add_source(struct receiver *r, const struct rgb *weight,
+                         struct rgb emission, double factor)
+{
+    receiver_add_near(r, weight, emission, factor);
+    for (int c = 0; c < BANDS; c++) {
+        double h = weight->band[c] * factor * emission.band[c];
+        r->row->source.band[c] += h;
+        r->light.band[c] += h;
+    }
+}
