@@ -4,7 +4,7 @@
  * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
  * point met receives light from a lamp, by one segment, and from one more ray, until a
  * ray ends far enough away: a path tracer for near surfaces, and radiosity for the rest.
- * In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
+ * One more ray is aimed at a pane: else single leaves shine. In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
  * along all edges of a room. */
 #include "rad/beyond/gather/path.h"
 
@@ -121,8 +121,12 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)
         light.band[c] *= factor;
-    if (r->gather->aims->panes)
-        receiver_cross(r, pane_walk_to(x, point.at), &light);
+    if (r->gather->aims->panes) {
+        struct pane_walk walk = pane_walk_to(x, point.at);
+        if (receiver_puts_aside(r, walk, -1))
+            return;
+        receiver_cross(r, walk, &light);
+    }
     path_go_on(r, point, x, is_aimed_lamp(r, &point, x), light, hash_mix(seed), false);
 }
 
@@ -145,32 +149,31 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     path_go_on(r, point, x, root_is_sender(g->aims->lamps, root), weight, seed, true);
 }
 
-/* Adds the light seen from x through the point y of a pane, with this form factor. */
-static void see_through(struct receiver *r, struct vec3 x, struct vec3 y, double factor,
-                        uint64_t seed)
+/* Adds `weight` times the light seen from x through the point y of a pane. Returns the
+ * part straight from a lamp. */
+static struct rgb see_through(struct receiver *r, struct vec3 x, struct vec3 y,
+                              struct rgb weight, uint64_t seed, bool aims)
 {
     struct final_gather *g = r->gather;
-    struct vec3 origin = point_above(x, r->facet.plane.normal);
-    struct vec3 direction = vec3_unit(vec3_sub(y, origin));
-    struct rgb weight = {{factor, factor, factor}};
+    struct vec3 direction = vec3_unit(vec3_sub(y, x));
+    struct rgb straight = {{0.0, 0.0, 0.0}};
     struct point point;
-    enum met met = trace(r, origin, direction, &point);
-    struct pane_walk walk = receiver_walk(r, origin, direction, met, &point);
+    enum met met = trace(r, x, direction, &point);
+    struct pane_walk walk = receiver_walk(r, x, direction, met, &point);
     bool lamp = met == MET_FRONT && root_is_sender(g->aims->lamps, point.root);
-    r->bright += factor;
     if (r->lamps_alone)
         receiver_filter(r, walk, &weight);
     else
         receiver_cross(r, walk, &weight);
-    for (int c = 0; c < BANDS && lamp; c++) {
-        const struct material *m = forest_material(g->model->forest, point.patch);
-        double h = weight.band[c] * m->emission.band[c];
-        r->row->lamps.band[c] += h;
-        r->row->source.band[c] += h;
-        r->light.band[c] += h;
+    if (lamp) {
+        straight = forest_material(g->model->forest, point.patch)->emission;
+        receiver_add_source(r, &weight, straight, 1.0);
+        for (int c = 0; c < BANDS; c++)
+            straight.band[c] *= weight.band[c];
     }
     if (met == MET_FRONT && !r->lamps_alone)
-        path_go_on(r, point, y, lamp, weight, seed, true);
+        path_go_on(r, point, y, lamp, weight, seed, aims);
+    return straight;
 }
 
 void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
@@ -182,13 +185,30 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
     if (receiver_puts_aside(r, walk, senders->sent ? patch : -1))
         return;
     if (senders->sent) {
-        see_through(r, x, y, factor, seed);
+        struct rgb all = {{factor, factor, factor}};
+        r->bright += factor;
+        rgb_add(&r->row->lamps, 1.0, see_through(r, walk.at, y, all, seed, true));
     } else if (senders->reflect) {
         receiver_see(r, x, y, patch, factor, seed);
     } else {
         receiver_filter(r, walk, &weight);
         receiver_add_source(r, &weight, sender_light(senders, patch), factor);
     }
+}
+
+/* Adds `weight` times the light behind panes, by one ray to one of them from x, just above
+ * the point. */
+static void look_through(struct receiver *r, const struct point *point, struct vec3 x,
+                         struct rgb weight, uint64_t seed)
+{
+    struct target pane;
+    if (!r->gather->aims->panes ||
+        !receiver_choose_beside(r, r->gather->aims->window_cuts, point->at,
+                                point->normal, point->patch, seed, &pane))
+        return;
+    for (int c = 0; c < BANDS; c++)
+        weight.band[c] *= pane.share;
+    see_through(r, x, pane.at, weight, hash_mix(seed + 1), false);
 }
 
 void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
@@ -202,19 +222,25 @@ void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aime
             return;
         if (!leave(r, &point, aimed, seed, &weight, &x, &direction))
             return;
-        if (aims)
+        if (aims) {
             look_beside(r, x, normal, &weight, seed + 10);
-        enum met met = trace(r, x, direction, &point);
-        if (r->gather->aims->panes)
-            receiver_cross(r, receiver_walk(r, x, direction, met, &point), &weight);
-        if (met != MET_FRONT) {
-            r->escaped++;
-            return;
+            look_through(r, &point, x, weight, hash_mix(seed));
         }
-        aimed = is_aimed_lamp(r, &point, x);
+        enum met met = trace(r, x, direction, &point);
+        r->escaped += met != MET_FRONT;
+        bool through = false;
+        if (r->gather->aims->panes) {
+            struct pane_walk walk = receiver_walk(r, x, direction, met, &point);
+            through = receiver_puts_aside(r, walk, -1);
+            if (through && aims)
+                return;
+            receiver_cross(r, walk, &weight);
+        }
+        if (met != MET_FRONT)
+            return;
+        aimed = !through && is_aimed_lamp(r, &point, x);
         if (aims && is_aimed_at_beside(r, &point, x))
             return;
     }
     path_add_mesh(r, &point, aimed, &weight);
 }
-

@@ -36,7 +36,7 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
 
 /* Adds the light, times `weight`, of a path at a point met by a ray from x: the path ends
  * there or goes on. `aimed`: the point is of a lamp aimed at. `aims`: the path aims from
- * all of its points at bright patches. */
+ * all of its points at panes and bright patches. */
 void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
                 struct rgb weight, uint64_t seed, bool aims);
 

@@ -32,30 +32,9 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     return blocker_of(r, x, input, y, root);
 }
 
-/* Adds the light of the lamp behind a pane that a walk to the pane finds, if segments are
- * to find it. `share`: the form factor, times the inverse of its probability. */
-static void add_behind_pane(struct receiver *r, struct pane_walk walk,
-                            const struct rgb *weight, double share)
-{
-    const struct scene *scene = r->gather->model->scene;
-    struct rgb light = *weight;
-    struct point point;
-    enum met met = probe(r, walk.at, walk.direction, &point);
-    if (met != MET_FRONT || !root_is_sender(r->gather->aims->lamps, point.root))
-        return;
-    struct triangle lamp = scene_root_triangle(scene, point.root);
-    if (point_is_beside(walk.at, &lamp))
-        return;
-    receiver_filter(r, pane_walk_to(walk.at, point.at), &light);
-    receiver_add_source(r, &light, scene_root_material(scene, point.root)->emission,
-                        share);
-}
-
-/* Aims one segment at a sender chosen by the cut of the patch's region, and at a point of
- * it above the horizon, by hashes. */
-static void aim_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
-                       struct vec3 normal, int32_t patch, const struct rgb *weight,
-                       uint64_t seed)
+bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
+                            struct vec3 normal, int32_t patch, uint64_t seed,
+                            struct target *target)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
@@ -64,41 +43,38 @@ static void aim_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
     struct cut cut = cuts_at(cuts, patch, &g->view->counts);
     struct choice sender = cuts_choose(cuts, cut, hash_unit(seed));
     if (sender.patch < 0)
-        return;
+        return false;
     struct triangle triangle = scene_root_triangle(scene, sender.patch);
     bool pane = cuts->senders->sent != NULL;
     if (!pane && point_is_beside(x, &triangle))
-        return;
+        return false;
     struct vec3 facing = scene_root_plane(scene, sender.patch).normal, y;
-    double factor = point_triangle_factor(x, normal, &triangle), kernel = 0.0;
+    double factor = point_triangle_factor(x, normal, &triangle);
     uint64_t at = seed + 2;
-    for (int k = 0; k < TRIES_MOST && factor > 0.0 && !(kernel > 0.0);
-         k++, at = hash_mix(at)) {
+    for (int k = 0; k < TRIES_MOST && factor > 0.0; k++, at = hash_mix(at)) {
         y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
-        kernel = point_kernel(x, normal, y, facing);
+        if (!(point_kernel(x, normal, y, facing) > 0.0))
+            continue;
+        *target = (struct target){sender.patch, y, factor * sender.share};
+        return blocker_of(r, x, input, y, sender.patch) < 0 &&
+               (!g->aims->panes ||
+                !receiver_puts_aside(r, pane_walk_to(point_above(x, normal), y),
+                                     pane ? sender.patch : -1));
     }
-    if (!(kernel > 0.0) || blocker_of(r, x, input, y, sender.patch) >= 0)
-        return;
-    struct rgb light = *weight;
-    if (g->aims->panes) {
-        struct pane_walk walk = pane_walk_to(point_above(x, normal), y);
-        if (receiver_puts_aside(r, walk, pane ? sender.patch : -1))
-            return;
-        if (pane) {
-            add_behind_pane(r, walk, weight, factor * sender.share);
-            return;
-        }
-        receiver_filter(r, walk, &light);
-    }
-    receiver_add_source(r, &light, scene_root_material(scene, sender.patch)->emission,
-                        factor * sender.share);
+    return false;
 }
 
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed)
 {
-    const struct gather_aims *aims = r->gather->aims;
-    aim_beside(r, aims->lamp_cuts, x, normal, patch, weight, seed);
-    if (aims->panes)
-        aim_beside(r, aims->window_cuts, x, normal, patch, weight, hash_mix(seed));
+    struct final_gather *g = r->gather;
+    struct rgb light = *weight;
+    struct target lamp;
+    if (!receiver_choose_beside(r, g->aims->lamp_cuts, x, normal, patch, seed, &lamp))
+        return;
+    if (g->aims->panes)
+        receiver_filter(r, pane_walk_to(point_above(x, normal), lamp.at), &light);
+    receiver_add_source(r, &light,
+                        scene_root_material(g->model->scene, lamp.root)->emission,
+                        lamp.share);
 }

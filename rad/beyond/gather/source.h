@@ -8,8 +8,21 @@
  * -1. */
 int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root);
 
-/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf, and
- * of one lamp behind a pane. */
+/* A point of a sender. */
+struct target {
+    int32_t root;
+    struct vec3 at;
+    double share; /* form factor of the sender over the probability of its choice, 1 */
+};
+
+/* Chooses a sender by the cut of a patch beside the leaf, and a point of it above the
+ * horizon of x, by hashes. False if the point is not visible, or its light is brought by
+ * a pane on the way. */
+bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
+                            struct vec3 normal, int32_t patch, uint64_t seed,
+                            struct target *target);
+
+/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed);
 
