@@ -103,6 +103,26 @@ static struct shot shot_at(const struct receiver *r, const struct aim *aim,
     return shot;
 }
 
+/* A shot found from the sender: in a direction by the cosine there, if this meets the
+ * receiver. Where a small sender is near, most of its light arrives at a small part of
+ * the receiver, and points all over it would seldom be there. */
+static struct shot shot_back(const struct receiver *r, const struct aim *aim,
+                             const struct facet *sender, int index)
+{
+    double u[SEQUENCE_DIMENSIONS], w[3];
+    struct vec3 normal = sender->plane.normal;
+    sequence_point(&aim->sequence, (uint32_t)index, u);
+    struct vec3 d = cosine_direction(normal, direction_along(normal), u[0], u[1]);
+    struct shot shot = {.y = triangle_of_square(&sender->triangle, u[2], u[3])};
+    double fall = -vec3_dot(r->facet.plane.normal, d);
+    double along = fall > 0.0 ? plane_distance(&r->facet.plane, shot.y) / fall : 0.0;
+    shot.x = vec3_add(shot.y, vec3_scale(d, along));
+    triangle_weights(&r->facet.triangle, shot.x, w);
+    if (along > 0.0 && w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0)
+        shot.kernel = 1.0;
+    return shot;
+}
+
 /* Adds the light of a sender by a shot with this form factor. Returns the light added,
  * over all bands, W/m^2. */
 static double add_shot(struct receiver *r, const struct aim *aim, const struct shot *shot,
@@ -136,6 +156,25 @@ static double exact_factor(const struct receiver *r, const struct senders *sende
     return mean_factor(&to->triangle, to->plane.normal, &from->triangle, work);
 }
 
+/* Finds up to `count` shots by this many tries for each. Returns their number; adds their
+ * kernels to `*all`. */
+static int find_shots(struct receiver *r, struct aim *aim, const struct facet *sender,
+                      int count, int tries, bool back, double *all)
+{
+    struct gather_aims *aims = r->gather->aims;
+    int found = 0, end = aim->index + tries * count;
+    RESERVE(aims->shots, &aims->shot_capacity, count);
+    while (found < count && aim->index < end) {
+        int index = aim->index++;
+        struct shot shot =
+            back ? shot_back(r, aim, sender, index) : shot_at(r, aim, sender, index);
+        aims->shots[found] = shot;
+        found += shot.kernel > 0.0;
+        *all += shot.kernel;
+    }
+    return found;
+}
+
 /* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
  * or -1. Where the exact factor is taken, points below a horizon are passed over, or the
  * light would be lost where all of few points are below. */
@@ -146,16 +185,15 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
     struct gather_aims *aims = r->gather->aims;
     bool exact = factor >= 0.0 || !aim->senders->reflect;
     double all = 0.0;
-    int found = 0, start = aim->index, end = start + (exact ? TRIES_MOST : 1) * count;
+    int found = 0, start = aim->index;
     if (!facets_face(&r->facet, &sender))
         return;
-    RESERVE(aims->shots, &aims->shot_capacity, count);
-    while (found < count && aim->index < end) {
-        struct shot shot = shot_at(r, aim, &sender, aim->index++);
-        aims->shots[found] = shot;
-        found += shot.kernel > 0.0;
-        all += shot.kernel;
-    }
+    if (aim->senders->sent && factor < 0.0)
+        factor = exact_factor(r, aim->senders, &sender);
+    if (aim->senders->sent && TRIES_MOST * factor * r->facet.area > sender.area)
+        found = find_shots(r, aim, &sender, count, TRIES_MOST, true, &all);
+    if (found == 0)
+        found = find_shots(r, aim, &sender, count, exact ? TRIES_MOST : 1, false, &all);
     if (found == 0)
         return;
     if (!exact)
