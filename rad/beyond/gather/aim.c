@@ -4,10 +4,10 @@
  * the light of nodes with nothing in the way, half by the part of this light seen from
  * the region. So a lamp behind a wall, however bright, leaves some segments for lamps in
  * the room, and a segment to a node not seen from the region counts at most twice. (Light
- * of another space, as long as no segment has seen any, has a fifth of the first half at
- * most, and adds nothing to what a leaf is unsure of.) A
- * sender of which the exact factor is F, and n segments of which have the kernels K
- * between their ends and meet a blocker or not (V), brings
+ * of another space, as long as no segment has seen any, has half of the first half at
+ * most, and adds nothing to what a leaf is unsure of.) A sender of which the exact factor
+ * is F, and n segments of which have the kernels K between their ends and meet a blocker
+ * or not (V), brings
  *
  *     F  sum of V K / sum of K  times its light:
  *
@@ -34,9 +34,6 @@
 /* A sender is near a receiver if the distance of their centres is at most so many times
  * the sum of their radii. */
 static const double NEARBY = 2.0;
-
-/* A near sender has an exact offer if worth this part of a segment at least. */
-static const double FOR_EXACT = 0.0625;
 
 /* Fewest segments for an estimate of the visible share of senders. */
 enum { VOLLEY = 4 };
@@ -264,7 +261,7 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
- * Offers of near senders with a good part of the light of a segment are exact. Returns
+ * Offers of near senders with the light of a segment are exact. Returns
  * the light dealt to each segment, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
@@ -287,8 +284,7 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         const struct cut_node *at = &cuts->nodes[cut.first + i];
         const struct sender_node *node = &senders->nodes[at->node];
         double blind = cuts_blind_part(senders, node, space);
-        if (aims->offers[i].worth * segments >= FOR_EXACT * all &&
-            is_near_sender(node, &own)) {
+        if (aims->offers[i].worth * segments >= all && is_near_sender(node, &own)) {
             aims->offers[i] = exact_offer(r, senders, node);
             aims->offers[i].worth *= blind;
         }
