@@ -21,11 +21,6 @@
  * the rays from a leaf for which there is one. */
 enum { REGION_LEAVES = 64, PILOTS = 16 };
 
-/* Of segments dealt blindly the part to all light of another space. A smaller part makes
- * light rare and bright that comes from there through a gap which no ray has found: with
- * 1/64 the error was four times as large. */
-static const double ELSEWHERE = 0.25;
-
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
 
@@ -119,7 +114,7 @@ double cuts_blind_part(const struct senders *senders, const struct sender_node *
     if (node->space == space || node->space < 0)
         return 1.0;
     const double *light = senders->model->spaces->light;
-    return ELSEWHERE * real_min(1.0, light[space] / light[node->space]);
+    return real_min(1.0, light[space] / light[node->space]);
 }
 
 /* Appends the nodes of a cut below a node. `most`: light of one of these, at most, W/m^2.
