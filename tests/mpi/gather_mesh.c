@@ -263,7 +263,7 @@ static void test_guess(const char *words)
     soup_add_quad(&soup, point(0, 3, 0), point(1, 0, 0), point(0, 1, 0), 1);
     soup_add_quad(&soup, point(0, 6, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&soup, 0.8, 0.0);
-    soup_add_quad(&soup, point(0, 6, 0.1), point(0, 1, 0), point(1, 0, 0), 1);
+    soup_add_quad(&soup, point(0, 6, 0.5), point(0, 1, 0), point(1, 0, 0), 1);
     paint(&soup, 0.0, 1.0);
     soup_add_box(&soup, point(0, 2.5, 1), point(1, 4.5, 2), 1, false);
     soup_add_box(&soup, point(0, 2.5, 3), point(1, 4.5, 4), 1, false);

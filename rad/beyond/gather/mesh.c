@@ -8,10 +8,9 @@
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
  * so all leaves have about the same share of the error. Where a thing stands on a leaf,
- * chance counts as well: below a house the light of a lawn is another one. If all of its
- * light falls on one quarter, a leaf has a variance of 3 times the square of its light,
- * at most: leaves too dark, by the light of the links, to be split even then are not
- * looked at. In a scene of many small triangles few are looked at.
+ * chance counts as well: below a house the light of a lawn is another one. Leaves are not
+ * looked at if neither their own light, by the links, nor the mean light would be enough,
+ * squared, for a split. In a scene of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
  * over a leaf B is linear, and a leaf where B bends (slope.c) is split.
@@ -38,18 +37,10 @@
 
 static const double MESH = 0.005;
 
-/* The variance of the light over a leaf is at most this times its square, which the links
- * tell with an error of this part of the mean square. */
-static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
-
 /* Where a thing stands on a leaf, its light has a variance of at least this part of its
  * square: few rays of a look may miss a strip of sunlit floor reaching below a wall, of
  * which a dark room would have the mean. */
 static const double SPREAD_CUT = 0.0625;
-
-/* Light of the mean radiosity of all surfaces, lamps included, has about this variance by
- * one ray, relative to its square. */
-static const double VARIANCE_OF_MEAN = 3.0;
 
 /* A look takes this part of the rays of a row for each quarter of the leaf. If these are
  * fewer than FEWEST_LOOKED, there are no looks. */
@@ -221,7 +212,7 @@ static struct known guess_of(const struct meshing *m, int32_t leaf)
     double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
     const struct lit *lit = &m->gather->lit[node_space(m->model, leaf)];
     double mean = rho * lit->mean / BANDS; /* of a band */
-    double guess = square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
+    double guess = square_of_light(forest, leaf) + BANDS * mean * mean;
     return (struct known){guess, guess, 0.0f, 1.0f};
 }
 
@@ -365,8 +356,8 @@ int32_t *meshing_choose(struct meshing *m, int64_t *count)
         double light = area * square_of_light(model->forest, mesh->leaves[i]);
         int32_t space = node_space(model, mesh->leaves[i]);
         double sum = m->sums[space].square, mean = sum / m->gather->lit[space].area;
-        double most = SPREAD_MOST * (light + UNSURE * area * mean);
-        if (known->by_ray > 0.0 && most >= MESH * model->criterion.epsilon * sum) {
+        if (known->by_ray > 0.0 &&
+            light + area * mean >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
             continue;
         }
