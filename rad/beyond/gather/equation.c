@@ -43,10 +43,6 @@
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
-/* Leaves with less than this part of the mean radiosity are solved for as if this
- * bright. */
-static const double DARK = 1e-3;
-
 struct equation equation_start(struct final_gather *gather,
                                const struct gather_mesh *mesh)
 {
@@ -257,10 +253,9 @@ double *equation_weigh(const struct equation *e, const struct rgb *b)
     }
     for (int64_t i = 0; i < e->count; i++) {
         int32_t s = equation_space(e, i);
-        double least = DARK * e->gather->lit[s].mean;
+        double light = fmax(rgb_sum(b[i]), e->gather->lit[s].mean);
         if (all[s] > 0.0)
-            weights[i] = e->areas[i] / all[s] +
-                         1.0 / ((double)count[s] * fmax(rgb_sum(b[i]), least));
+            weights[i] = e->areas[i] / all[s] + 1.0 / ((double)count[s] * light);
     }
     alloc_free(all);
     alloc_free(count);
