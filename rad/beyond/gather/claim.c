@@ -11,9 +11,9 @@
 
 #include "geom/alloc.h"
 
-/* The light of an undivided root varies by about the first part, or the second times its
- * size over its distance: seen from near, a root may be lit unlike its mean. */
-static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
+/* The light of an undivided root varies by about this part times its size over its
+ * distance: seen from near, a root may be lit unlike its mean. */
+static const double UNDIVIDED = 0.3;
 
 /* The error of 95 % of leaves is less than this many deviations: these are estimated for
  * many leaves together, and single ones are noisier or calmer. */
@@ -23,8 +23,8 @@ static const double BOUND = 2.5;
 static const double FACTORS = 4e-4;
 
 /* Classes of the leaves of a space by their light: the last has 2^(BRIGHTEST - 1) times
- * the mean and more. Fewest leaves, counted in each band, to estimate a ratio over. */
-enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
+ * the mean and more. */
+enum { CLASSES = 48, BRIGHTEST = 8 };
 
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
  * from the mean over its parent; of undivided roots, a part of the reflected
@@ -40,7 +40,7 @@ static struct rgb variation_of(const struct equation *e, int64_t place, struct v
     if (parent < 0) {
         struct vec3 apart = vec3_sub(e->gather->near->leaves[patch].middle, from);
         double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
-        part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
+        part = fmin(1.0, UNDIVIDED * near);
     }
     for (int c = 0; c < BANDS; c++)
         deviation.band[c] *= part;
@@ -127,7 +127,6 @@ static void raise_to_sisters(const struct equation *e, const int *rays,
 /* Variances of a class of leaves, summed up, each times its leaf's area. */
 struct noise {
     double by_halves, by_chance;
-    int64_t count;
 };
 
 /* The class of a leaf by its H in a band. Each has twice the light of the one before. */
@@ -176,7 +175,6 @@ static void classify(const struct equation *e, const struct rgb *halves,
         struct noise *class = &classes[own[k]];
         class->by_halves += weight[k] * halves[k / BANDS].band[k % BANDS];
         class->by_chance += weight[k] * chance[k / BANDS].band[k % BANDS];
-        class->count += weight[k] > 0.0;
     }
     alloc_free(all);
     alloc_free(sum);
@@ -185,25 +183,16 @@ static void classify(const struct equation *e, const struct rgb *halves,
 }
 
 /* The ratio of the sequence's variance to the one by chance, of reflected light, by the
- * variances of the leaves of a class by their halves and by chance, and of the next
- * classes while leaves are few. A quarter of the squared difference of two halves is the
- * variance of their mean if the two are independent, as if by chance, where the ratio is
- * 1. Of a sequence the second half falls into the gaps of the first: where variance falls
- * threefold with twice the rays, as in the Cornell box and in rooms, the variance is half
- * of that. There the ratio is small, but not where a few rays bring most light, as in a
- * storey below a stairwell. */
-static double ratio_of_sequence(const struct noise *classes, int class)
+ * variances of the leaves of a class by their halves and by chance. A quarter of the
+ * squared difference of two halves is the variance of their mean if the two are
+ * independent, as if by chance, where the ratio is 1. Of a sequence the second half falls
+ * into the gaps of the first: where variance falls threefold with twice the rays, as in
+ * the Cornell box and in rooms, the variance is half of that. There the ratio is small,
+ * but not where a few rays bring most light, as in a storey below a stairwell. */
+static double ratio_of_sequence(const struct noise *class)
 {
-    struct noise all = {0};
-    for (int width = 0; all.count < FEWEST && width < CLASSES; width++)
-        for (int k = class - width; k <= class + width; k += width ? 2 * width : 1) {
-            if (k < 0 || k >= CLASSES)
-                continue;
-            all.by_halves += classes[k].by_halves;
-            all.by_chance += classes[k].by_chance;
-            all.count += classes[k].count;
-        }
-    double ratio = all.by_chance > 0.0 ? fmin(1.0, all.by_halves / all.by_chance) : 1.0;
+    double ratio =
+        class->by_chance > 0.0 ? fmin(1.0, class->by_halves / class->by_chance) : 1.0;
     return ratio / (2.0 - ratio);
 }
 
@@ -216,7 +205,7 @@ void claim_by_rays(const struct equation *e, const struct rgb *halves,
     int32_t *own_class = alloc_array(BANDS * (size_t)e->count, sizeof *own_class);
     classify(e, halves, variance, classes, own_class);
     for (int32_t k = 0; k < all; k++)
-        ratios[k] = ratio_of_sequence(classes + k / CLASSES * CLASSES, k % CLASSES);
+        ratios[k] = ratio_of_sequence(&classes[k]);
     for (int64_t i = 0; i < e->count; i++) {
         variance[i] = rgb_sub(variance[i], segments[i]);
         for (int c = 0; c < BANDS; c++)
