@@ -12,6 +12,7 @@
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
 #include "io/scene/sky.h"
+#include "io/scene/stl.h"
 #include "geom/signals.h"
 #include "mpi/broadcast.h"
 #include "tools/idle.h"
@@ -171,6 +172,8 @@ static bool read_file(struct run *run, struct obj_repairs *repairs)
     bool good = source_open(&source, run->options.scene, &run->error);
     if (good && ply_is_meant(&source))
         good = read_ply(run, &source);
+    else if (good && stl_is_meant(&source))
+        good = (run->scene = stl_of_source(&source, &run->error)) != NULL;
     else if (good)
         good = (run->scene = obj_of_source(&source, repairs, &run->error)) != NULL;
     source_close(&source);

@@ -656,7 +656,7 @@ void options_free(struct options *options)
 
 static const char HEAD[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
-    "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n";
+    "Computes the light in a diffuse scene, OBJ, PLY or STL. Defaults in brackets.\n";
 static const char FOOT[] =
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
     "  phr room.obj -o room.png\n"

@@ -14,6 +14,8 @@
 static bool has_magic(const struct binary *binary, const char *magic, const char *kind,
                       struct error *error)
 {
+    if (!*magic)
+        return true;
     for (; *magic; magic += *magic == ' ') {
         size_t length = strcspn(magic, " ");
         if (strncmp(binary->data, magic, length) == 0)

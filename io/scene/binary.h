@@ -17,8 +17,8 @@ struct binary {
     long line;          /* number of the text line at `position`, from 1 */
 };
 
-/* Reads an open file, which has to begin with one of the words of `magic`. Owned by the
- * caller until binary_free(), which is allowed (not needed) after a failure.
+/* Reads an open file, which has to begin with one of the words of `magic`, if there
+ * are any. Owned by the caller until binary_free(), which is allowed (not needed) after a failure.
  * Errors: "PATH: cannot read: REASON"; "PATH: not KIND". Both ask for EXIT_USAGE. */
 bool binary_read(struct binary *binary, struct source *source, const char *magic,
                  const char *kind, struct error *error);

@@ -13,7 +13,7 @@
 
 static const char HELP[] =
     "usage: viewfactors [options] SCENE  or  mpiexec -n P viewfactors [options] SCENE\n"
-    "Prints the form factors F between the groups (o, g) of a scene, OBJ or PLY, with\n"
+    "Prints the form factors F between the groups (o, g) of a scene (OBJ PLY STL), with\n"
     "blockers, as CSV. Defaults in brackets.\n"
     "  --epsilon E    of the smaller group's area, in doubt between two patches (1e-2)\n"
     "  --accuracy A   smaller epsilons, until no F is off by more\n"
