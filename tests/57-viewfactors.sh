@@ -9,7 +9,7 @@
 table() {
     table_name=$1
     shift
-    "$BUILD/viewfactors" --quiet "$work/$table_name.obj" "$@" >"$work/$table_name.csv"
+    "$BUILD/viewfactors" --quiet --dense "$work/$table_name.obj" "$@" >"$work/$table_name.csv"
 }
 
 # value FILE FROM TO: F.
@@ -30,7 +30,7 @@ near() {
 claimed() {
     claimed_name=$1
     shift
-    $MPIEXEC -n 1 "$BUILD/viewfactors" "$work/$claimed_name.obj" "$@" </dev/null \
+    $MPIEXEC -n 1 "$BUILD/viewfactors" --dense "$work/$claimed_name.obj" "$@" </dev/null \
         >"$work/$claimed_name.csv" 2>"$work/log"
     claim=$(sed -n 's/.*largest error of F: //p' "$work/log")
 }
@@ -199,6 +199,28 @@ check "its rows sum to 1" rows_are_one box 1e-9
 check "opposite faces" near "$(value box floor ceiling)" 0.199824895698387 1e-9 0
 check "adjacent faces" near "$(value box left back)" 0.200043776075403 1e-9 0
 check "a plane face does not see itself" [ "$(value box floor floor)" = 0 ]
+
+"$BUILD/viewfactors" "$work/box.obj" >"$work/sparse.csv" 2>"$work/errors"
+awk -F, '$2 == "*" || $4 > 0' "$work/box.csv" >"$work/some.csv"
+check "without --dense those that are 0 are left out" \
+    cmp "$work/sparse.csv" "$work/some.csv"
+check "a closed box has no warning" [ "$(grep -c warning "$work/errors")" -eq 0 ]
+# warned TEXT COMMAND...: of the box, changed.
+warned() {
+    text=$1
+    shift
+    "$@" "$work/box.obj" >"$work/changed.obj"
+    "$BUILD/viewfactors" "$work/changed.obj" 2>&1 >"$work/out" | grep -qF "$text"
+}
+check "a face that looks away is told" \
+    warned "2 of the triangles look away from all others (first in right)" \
+    awk '/^o right/ { turned = 1 }
+        /^f/ && turned { print "f", $5, $4, $3, $2; next } { print }'
+{ cat "$work/box.obj"; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } \
+    >"$work/stands.obj"
+check "and rows of a closed scene that do not sum to 1" sh -c "
+    '$BUILD/viewfactors' '$work/stands.obj' 2>&1 >'$work/out' |
+    grep -qF '2 rows do not sum to 1, as the others do (first: floor, 0.91'"
 
 sed -e 's/^o floor/o open/' -e '/^o [cfblr]/d' "$work/box.obj" |
     awk '/^f 2 6 8 4/ { print "o lid" } { print }' >"$work/concave.obj"

@@ -6,6 +6,9 @@
  * With --accuracy, pairs of groups not good enough are done again with a smaller epsilon,
  * at most ROUNDS times: each round costs several times the one before, so earlier rounds
  * cost little. */
+#include <math.h>
+#include <string.h>
+
 #include "geom/stop.h"
 #include "tools/input.h"
 #include "tools/viewfactors/pairs.h"
@@ -18,6 +21,7 @@ static const char HELP[] =
     "  --epsilon E    of the smaller group's area, in doubt between two patches (1e-2)\n"
     "  --accuracy A   smaller epsilons, until no F is off by more\n"
     "  --max-level N  of subdivision (10)\n"
+    "  --dense        factors that are 0, too\n"
     "  --two-sided, --two-sided-lamps  faces have backs, those of lamps, too\n"
     "  --quiet  --verbose  --help  --version\n"
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input.\n";
@@ -26,6 +30,9 @@ static const char HELP[] =
 static const char *const OPTIONS[] = {
     "--epsilon", "--accuracy", "--max-level", "--two-sided", "--two-sided-lamps",
     "--quiet", "--verbose", "--help", "--version", NULL};
+
+/* A row that is off 1 by more, or by more than the error of F, is told. */
+static const double ROW_SUM = 1e-3;
 
 /* The default of --epsilon, with --accuracy and without. */
 static const double EPSILON = 1e-2;
@@ -57,6 +64,43 @@ static double add_in_rounds(struct run *run, struct viewfactors *factors)
     }
 }
 
+/* Returns the name of a group. */
+static const char *name_of(const struct run *run, int32_t group)
+{
+    const char *name = run->scene->groups.names;
+    while (group-- > 0)
+        name += strlen(name) + 1;
+    return name;
+}
+
+/* Tells of faces that look away from all others; and, where at least half of the rows sum
+ * to 1, so that the scene is closed but for some mistake, of those that do not. */
+static void warn_rows(struct run *run, const struct viewfactors *factors, double error)
+{
+    double within = fmax(ROW_SUM, error), first_sum = 0.0;
+    int32_t ones = 0, others = 0, first = 0;
+    for (int32_t i = factors->count - 1; i >= 0; i--) {
+        double sum = factors->areas[i] > 0.0 ? viewfactors_row(factors, i) : 1.0;
+        bool is_one = fabs(sum - 1.0) <= within;
+        ones += is_one;
+        others += !is_one;
+        if (!is_one) {
+            first = i;
+            first_sum = sum;
+        }
+    }
+    if (factors->away > 0 && !run->scene->two_sided)
+        run_say(run, "warning: %ld of the triangles look away from all others (first in "
+                     "%s): corners are counter-clockwise as seen from the front",
+                (long)factors->away,
+                name_of(run, run->scene->groups.of[scene_input_of(
+                                 run->scene, factors->first_away)]));
+    if (others > 0 && ones >= others)
+        run_say(run, "warning: %ld rows do not sum to 1, as the others do (first: %s, "
+                     "%.4g): a hole, faces that look away, or are covered",
+                (long)others, name_of(run, first), first_sum);
+}
+
 static void report(struct run *run, double error)
 {
     double accuracy = run->options.criterion.accuracy;
@@ -69,7 +113,7 @@ static void report(struct run *run, double error)
 }
 
 /* Collective. Prints the form factors between the groups of the scene. */
-static void tabulate(struct run *run)
+static void tabulate(struct run *run, bool dense)
 {
     const struct criterion *criterion = &run->options.criterion;
     if (run->scene->groups.count > VIEWFACTOR_GROUPS_MAX) {
@@ -84,11 +128,13 @@ static void tabulate(struct run *run)
         run->scene, run->octree, criterion->epsilon, criterion->max_level);
     double error = add_in_rounds(run, factors);
     if (run->error.code == EXIT_DONE && run->comm.rank == 0) {
-        table_print(factors, stdout);
+        table_print(factors, dense, stdout);
         stop_check(&run->error);
     }
-    if (run_agree(run))
+    if (run_agree(run)) {
+        warn_rows(run, factors, error);
         report(run, error);
+    }
     viewfactors_destroy(factors);
 }
 
@@ -115,17 +161,30 @@ static void print_words(const struct options *options)
         printf("viewfactors %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
 }
 
+/* Takes --dense out of the arguments. True if it was there. */
+static bool take_dense(int *argc, char **argv)
+{
+    int left = 0, all = *argc;
+    for (int i = 0; i < all; i++)
+        if (i == 0 || strcmp(argv[i], "--dense") != 0)
+            argv[left++] = argv[i];
+    *argc = left;
+    argv[left] = NULL;
+    return left < all;
+}
+
 int main(int argc, char **argv)
 {
     error_program = "viewfactors";
     struct run run = {0};
+    bool dense = take_dense(&argc, argv);
     bool started = run_start(&run, &argc, &argv), first = run.comm.rank == 0;
     if (started && parse(&run, argc, argv)) {
         bool words = run.options.help || run.options.version;
         if (words && first)
             print_words(&run.options);
         if (!words && input_broadcast(&run))
-            tabulate(&run);
+            tabulate(&run, dense);
     }
     return run_end(&run);
 }

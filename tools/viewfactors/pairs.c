@@ -31,6 +31,7 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
         facets[i] =
             (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
                            scene_root_area(scene, i), scene_input_of(scene, i)};
+    bool *faced = alloc_array((size_t)roots, sizeof *faced); /* by some other */
     int64_t dealt = 0, turn = (int64_t)TURN * comm->size;
     bool stopped = false;
     for (int32_t i = 0; i < roots && !stopped; i++) {
@@ -39,11 +40,19 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
             if (!(facets[i].area > 0.0) || !(facets[j].area > 0.0) ||
                 !facets_face(&facets[i], &facets[j]))
                 continue;
+            faced[i] = faced[j] = true;
             if (dealt % comm->size == comm->rank)
                 viewfactors_add(factors, i, &facets[i], j, &facets[j]);
             stopped = ++dealt % turn == 0 && some_stop(comm);
         }
     }
+    factors->away = 0;
+    for (int32_t i = roots - 1; i >= 0; i--)
+        if (facets[i].area > 0.0 && !faced[i]) {
+            factors->away++;
+            factors->first_away = i;
+        }
+    alloc_free(faced);
     alloc_free(facets);
 }
 

@@ -38,7 +38,7 @@ static void print_line(const char *from, const char *to, double area, double fac
     fprintf(file, ",%.17g,%.17g\n", area, factor);
 }
 
-void table_print(const struct viewfactors *factors, FILE *file)
+void table_print(const struct viewfactors *factors, bool dense, FILE *file)
 {
     double unit = scene_area_unit(factors->scene);
     const char **names = alloc_array((size_t)factors->count, sizeof *names);
@@ -50,7 +50,8 @@ void table_print(const struct viewfactors *factors, FILE *file)
         double area = factors->areas[i] * unit, sum = 0.0;
         for (int32_t j = 0; j < factors->count; j++) {
             double factor = viewfactors_factor(factors, i, j);
-            print_line(names[i], names[j], area, factor, file);
+            if (dense || factor > 0.0)
+                print_line(names[i], names[j], area, factor, file);
             sum += factor;
         }
         print_line(names[i], NULL, area, sum, file);

@@ -386,6 +386,14 @@ double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t 
                                    : 0.0;
 }
 
+double viewfactors_row(const struct viewfactors *factors, int32_t i)
+{
+    double sum = 0.0;
+    for (int32_t j = 0; j < factors->count; j++)
+        sum += viewfactors_factor(factors, i, j);
+    return sum;
+}
+
 /* Returns the standard error of F_ij or F_ji, whichever is larger. */
 static double error_between(const struct viewfactors *factors, int32_t i, int32_t j)
 {

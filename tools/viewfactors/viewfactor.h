@@ -27,6 +27,8 @@ struct viewfactors {
     bool *done;                  /* [pairs] G_ij is good enough: nothing is added */
     int64_t pairs;               /* count (count + 1) / 2 */
     int64_t links;               /* parts added so far */
+    int32_t away;                /* roots that face no other */
+    int32_t first_away;          /* the first of them */
     struct octree_counts counts; /* work so far */
 };
 
@@ -47,6 +49,9 @@ void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet 
 
 /* Returns F_ij by the pairs added so far; 0 for a group without area. */
 double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t j);
+
+/* Returns the sum of the row of a group, by the pairs added so far. */
+double viewfactors_row(const struct viewfactors *factors, int32_t i);
 
 /* Returns the largest error of all F, as far as the pairs added so far tell; 0 if all are
  * exact. */
