@@ -20,7 +20,8 @@ static inline struct trial gather_scene(struct soup *soup, const char *words, in
     snprintf(all, sizeof all, "%s --final-gather 0", words);
     struct trial g = {.s = solve_soup(soup, all)};
     struct forest *forest = g.s.solver->model.forest;
-    g.gather = final_gather_create(&g.s.solver->model, rays, NULL);
+    g.gather = final_gather_create(&g.s.solver->model, rays, NULL,
+                                   lit_find(&g.s.solver->model));
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
     for (int64_t i = 0; i < forest->count; i++)
         g.radiosity[i] = forest->radiosity[g.gather->order[i]];

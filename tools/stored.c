@@ -156,17 +156,14 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
     struct forest *forest = solver->model.forest;
     struct answer *answer = solver->beyond->answer;
     size_t count = (size_t)forest->count;
-    answer->gather = final_gather_create(&solver->model,
-                                         solver->model.criterion.final_gather, NULL);
+    struct lit *lit = lit_find(&solver->model);
     if (solution->lamps.known) {
-        senders_destroy(answer->gather->aims->lamps);
-        answer->gather->lit[0].lamp_least = solution->lamps.lamp_least;
-        answer->gather->lit[0].mean = solution->lamps.mean;
-        answer->gather->aims->lamps =
-            lamps_create(&solver->model, answer->gather->lit);
-        final_gather_renew(answer->gather);
+        lit[0].lamp_least = solution->lamps.lamp_least;
+        lit[0].mean = solution->lamps.mean;
         answer->straight = alloc_array(count, sizeof *answer->straight);
     }
+    answer->gather = final_gather_create(
+        &solver->model, solver->model.criterion.final_gather, NULL, lit);
     if (solution->has_error)
         answer->error = alloc_array(count, sizeof *answer->error);
     if (solution->has_outside)

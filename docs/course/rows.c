@@ -242,7 +242,8 @@ int main(int argc, char **argv)
     if (run_start(&run, &argc, &argv) && run_parse(&run, argc, argv) &&
         compute_light(&run)) {
         struct final_gather *gather =
-            final_gather_create(&run.solver->model, MOST, NULL);
+            final_gather_create(&run.solver->model, MOST, NULL,
+                                lit_find(&run.solver->model));
         bool open = final_gather_root_is_open(gather, 0, true) &&
                     final_gather_root_is_open(gather, 1, true);
         struct place at[POINTS];

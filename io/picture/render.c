@@ -49,10 +49,10 @@ enum {
     MORE = 4      /* most factor on these two */
 };
 
-/* A pixel is unsure if its light has this deviation by chance, or is so far from the
- * mesh's, relative to the geometric mean of its light and the mean light reflected in
- * its space: a display shows differences by the root of light. .015 are about one code of
- * 255. */
+/* A pixel is unsure if the deviation of its light by chance exceeds NOISE, or its
+ * difference from the mesh's light exceeds APART. Both are relative to the geometric mean
+ * of its light and the mean light reflected in its space, since a display shows
+ * differences by the root of light. .015 are about one code of 255. */
 static const double NOISE = 0.015, APART = 0.01; /* 1 */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,

@@ -147,7 +147,7 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
 {
     struct model *model = &solver->model;
     struct final_gather *gather =
-        final_gather_create(model, model->criterion.final_gather, NULL);
+        final_gather_create(model, model->criterion.final_gather, NULL, lit_find(model));
     uint8_t *open = find_open_roots(solver, gather);
     struct meshing meshing = {.model = model, .gather = gather, .mesh = mesh,
                               .open = open,

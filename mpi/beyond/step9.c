@@ -107,7 +107,7 @@ static bool make_rows(struct gathering *g)
     struct solver *solver = g->solver;
     const struct gather_mesh *mesh = &g->mesh;
     g->gather = final_gather_create(&solver->model, solver->model.criterion.final_gather,
-                                    mesh->cut);
+                                    mesh->cut, lit_find(&solver->model));
     g->equation = equation_start(g->gather, mesh);
     g->all = alloc_array((size_t)mesh->count, sizeof *g->all);
     progress_begin(solver->progress, "gathering", -1, 0);

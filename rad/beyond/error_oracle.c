@@ -108,12 +108,12 @@ static double doubt_of_patches(const struct link *link)
     return (agreed ? 1.0 : DISAGREED) * DOUBT * link_unoccluded(link);
 }
 
-/* G in doubt of a link with a cluster: of near ends, all of the bound, which may be in a
- * few pairs of roots, whatever a look would find; of far ones, all found without blockers
- * by the first look, or the part in doubt of patches, should a look find nothing at all:
- * else errors would end at a floor. By the link's own G, links happening to lack light
- * would stay, and those with too much be split. The G of the first look is kept in place
- * of a blocker, which such a link lacks. */
+/* G in doubt of a link with a cluster. Of near ends it is the whole bound: a few pairs of
+ * roots may have all of it, whatever a look finds. Of far ends it is what the first look
+ * has found without blockers, and at least the part that is in doubt for patches: a look
+ * may find nothing at all. The link's own G would not do: links that lack light by chance
+ * would stay, and links with too much would be split. The G of the first look is kept in
+ * place of a blocker, which such a link lacks. */
 static double doubt_of_clusters(const struct link *link, const struct meeting *m)
 {
     float judged;

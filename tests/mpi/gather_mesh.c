@@ -104,7 +104,8 @@ static bool is_cut_below(double height)
     soup_add_quad(&soup, point(0, 0, 0.5), point(0, 1, 0), point(1, 0, 0), 2);
     paint(&soup, 0.0, 1.0);
     struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 0");
-    struct final_gather *gather = final_gather_create(&s.solver->model, 16, NULL);
+    struct final_gather *gather =
+        final_gather_create(&s.solver->model, 16, NULL, lit_find(&s.solver->model));
     bool cut = final_gather_look(gather, 0, 4).cut ||
                final_gather_look(gather, 1, 4).cut;
     final_gather_destroy(gather);
@@ -186,7 +187,8 @@ static void test_looks(void)
     paint(&soup, 0.5, 1.0);
     struct solution s = solve_soup(&soup, "--epsilon 0.1");
     struct model *model = &s.solver->model;
-    struct final_gather *gather = final_gather_create(model, RAYS, NULL);
+    struct final_gather *gather =
+        final_gather_create(model, RAYS, NULL, lit_find(model));
     double spread = 0.0, noise = 0.0, alone = 0.0;
     int32_t p = forest_next_leaf(model->forest, -1);
     for (; p >= 0; p = forest_next_leaf(model->forest, p)) {

@@ -309,10 +309,11 @@ static bool is_by_chance(const struct senders *senders, const struct cut_node *n
            (node->found > 0.0 && node->found < 1.0);
 }
 
-/* A node sure to get a segment counts with its own light, shared among its segments. The
- * other nodes are dealt segments apart, a whole number, and so count together with their
- * own light. Where a share is seen from around, the variance is at least the one of
- * chance by this share: all of few segments may miss, which would seem sure. */
+/* A node whose light is worth a segment or more gets some, and they share its light. The
+ * fainter nodes are dealt a whole number of segments together; the one that gets a
+ * segment stands for those that get none. Few segments may all miss, which would seem
+ * sure. So where the region sees a share of a node, its variance is at least that of a
+ * chance with this share. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row->leaf, &r->gather->view->counts);

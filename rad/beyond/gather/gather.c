@@ -71,7 +71,7 @@ static struct gather_sums *sums_create(const struct model *model, const struct l
     return sums;
 }
 
-struct senders *lamps_create(const struct model *model, const struct lit *lit)
+static struct senders *lamps_create(const struct model *model, const struct lit *lit)
 {
     double *least = alloc_array((size_t)lit_count(model), sizeof *least);
     for (int32_t s = 0; s < lit_count(model); s++)
@@ -80,14 +80,14 @@ struct senders *lamps_create(const struct model *model, const struct lit *lit)
 }
 
 struct final_gather *final_gather_create(struct model *model, int rays,
-                                         const uint8_t *cut)
+                                         const uint8_t *cut, struct lit *lit)
 {
     const struct forest *forest = model->forest;
     struct final_gather *gather = alloc_array(1, sizeof *gather);
     gather->model = model;
     gather->cut = cut;
     gather->rays = rays_for(rays, forest_count(forest).leaves);
-    gather->lit = lit_find(model);
+    gather->lit = lit;
     gather->order = forest_order(forest);
     gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
     for (int64_t i = 0; i < forest->count; i++)
@@ -95,11 +95,11 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->view = alloc_array(1, sizeof *gather->view);
     gather->view->root = -1;
     gather->view->overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather->near = nears_create(model, gather->lit);
-    gather->sums = sums_create(model, gather->lit);
+    gather->near = nears_create(model, lit);
+    gather->sums = sums_create(model, lit);
     gather->aims = alloc_array(1, sizeof *gather->aims);
     gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
-    gather->aims->lamps = lamps_create(model, gather->lit);
+    gather->aims->lamps = lamps_create(model, lit);
     gather->aims->panes = panes_create(model->scene);
     final_gather_renew(gather);
     return gather;

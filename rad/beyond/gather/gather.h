@@ -31,9 +31,9 @@ struct gather_sums {
 /* A leaf at points met by rays too near for its mean to hold: their paths went on from
  * there. */
 struct gather_near {
-    int64_t area;         /* of senders, each times the part of its rays meeting the leaf
-                             so: by reciprocity, the leaf's area times the part of its
-                             light going there */
+    int64_t area;         /* sum over senders: area, times the part of rays that meet
+                             the leaf too near. By reciprocity this is the leaf's area,
+                             times the part of its light for near receivers */
     int64_t watts[BANDS]; /* found there by the rays, emitted by lamps */
 };
 
@@ -144,13 +144,10 @@ struct gather_points {
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
 double forest_mean_reflected(const struct forest *forest);
 
-/* The lamps of a scene, by how bright its spaces are. */
-struct senders *lamps_create(const struct model *model, const struct lit *lit);
-
 /* Borrows the model, which has clusters and a solution, and `cut`: see struct
- * final_gather. `rays`: at least 1. */
+ * final_gather. Owns `lit`, of which lamps are chosen. `rays`: at least 1. */
 struct final_gather *final_gather_create(struct model *model, int rays,
-                                         const uint8_t *cut);
+                                         const uint8_t *cut, struct lit *lit);
 void final_gather_destroy(struct final_gather *gather); /* NULL: none */
 
 /* Finds the bright patches anew, and the patches as met by rays, by the radiosities of

@@ -15,9 +15,9 @@ struct lit {
     double reflected;  /* the reflected part, over bands, W/m^2 */
     double lamp_least; /* a lamp emits more than this, over bands, W/m^2 */
     double bright_least; /* a bright patch reflects more than this */
-    struct rgb scale;  /* factors giving all bands the same mean, the one over bands; a
-                          band with less than GATHER_DIM of this mean has the factor of a
-                          band with so much, 1 */
+    struct rgb scale;  /* factors of bands: times these all bands have the mean of all
+                          three. A band with less than GATHER_DIM of this mean counts as
+                          having so much, 1 */
 };
 
 /* The number of spaces, and the one of a patch. */

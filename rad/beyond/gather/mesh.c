@@ -38,16 +38,16 @@
 static const double MESH = 0.005;
 
 /* Where a thing stands on a leaf, its light has a variance of at least this part of its
- * square: few rays of a look may miss a strip of sunlit floor reaching below a wall, of
- * which a dark room would have the mean. */
+ * square. A strip of sunlit floor may reach below the wall of a dark room: few rays miss
+ * it, and the room would have the mean of both. */
 static const double SPREAD_CUT = 0.0625;
 
 /* A look takes this part of the rays of a row for each quarter of the leaf. If these are
  * fewer than FEWEST_LOOKED, there are no looks. */
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 
-/* Few rays of a look may miss what is bright: the mean noise of all leaves, relative to
- * their light, counts as so many more. */
+/* The few rays of a look may miss what is bright, and find too little noise. So the mean
+ * noise of all leaves, relative to their light, counts as this number of rays more. */
 static const double UNSURE_RAYS = 32.0;
 
 /* Marks in place of a variance: the row will be exact; too dark to be looked at. */

@@ -67,7 +67,7 @@ void receiver_add_point(struct receiver *r, int32_t patch,
 void receiver_add_source(struct receiver *r, const struct rgb *weight,
                          struct rgb emission, double factor);
 
-/* The same to the light of the leaf too near met first by the ray at hand, if any. */
+/* Adds such light to the leaf too near by which the ray at hand arrives, if any. */
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor);
 

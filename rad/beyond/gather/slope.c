@@ -13,9 +13,9 @@
  * know over which edges light goes on smoothly, and at shadows, where interpolation
  * matters, light does not.
  *
- * Over a leaf with an exact row the rest is the bend: B of a leaf less the linear function
- * over its parent. Its error comes back as often as light is reflected, so less is allowed
- * where little is absorbed:
+ * Over a leaf with an exact row the rest is the bend: B of a leaf less the linear
+ * function over its parent. Its error comes back as often as light is reflected, so less
+ * is allowed where little is absorbed:
  *
  *     area * bend^2  <=  BENT * absorptance * epsilon * sum of area * (rho H)^2,
  *

@@ -19,7 +19,8 @@ static double absorbed_part(struct scene *scene, double first, double *off)
         model->forest->radiosity[p] = (struct rgb){{first, first, first}};
     uint8_t *open = alloc_array((size_t)model->forest->root_count, sizeof *open);
     struct gather_mesh mesh = {.count = 0};
-    struct final_gather *gather = final_gather_create(model, RAYS, NULL);
+    struct final_gather *gather =
+        final_gather_create(model, RAYS, NULL, lit_find(model));
     struct meshing meshing = {model, gather, &mesh, open, .patches_most = 0};
     meshing_begin(&meshing);
     meshing_end(&meshing);
