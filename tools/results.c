@@ -82,7 +82,7 @@ static void write_meshes(struct run *run, const struct shading *shading,
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         .error = answer->error, .straight = answer->straight,
-        .outside = answer->outside, .irradiance = irradiance->forest.radiosity,
+        .outside = answer->open, .irradiance = irradiance->forest.radiosity,
         .irradiance_error = irradiance->error, .irradiance_at = irradiance_at,
         .lamps = {answer->straight,
                   answer->straight ? answer->gather->lit->lamp_least : 0.0,
@@ -116,7 +116,7 @@ static struct shading *shade_leaves(struct run *run, const struct irradiance *ir
         run->options.flat
             ? shading_create_flat(forest)
             : shading_create(forest, run->octree, rest ? straight : NULL,
-                             rest ? error : NULL, answer->outside);
+                             rest ? error : NULL, answer->open);
     account_end(&run->solver->account, PHASE_SHADING);
     return shading;
 }

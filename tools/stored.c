@@ -167,7 +167,7 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
     if (solution->has_error)
         answer->error = alloc_array(count, sizeof *answer->error);
     if (solution->has_outside)
-        answer->outside = alloc_array(count, sizeof *answer->outside);
+        answer->open = alloc_array(count, sizeof *answer->open);
     for (int64_t i = 0; i < solution->count; i++) {
         int32_t leaf = forest_reach(forest, solution->leaves[i].id);
         const struct solution_leaf *from = &solution->leaves[i];
@@ -175,8 +175,8 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
             answer->straight[leaf].band[c] = from->radiosity.band[c] - from->rest.band[c];
         if (answer->error)
             answer->error[leaf] = (float)from->error;
-        if (answer->outside)
-            answer->outside[leaf] = (float)from->outside;
+        if (answer->open)
+            answer->open[leaf] = (float)from->outside;
     }
 }
 

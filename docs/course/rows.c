@@ -155,7 +155,7 @@ static struct estimate by_segments_of_phr(const struct place *at, int n)
                                    .plane = at->model->scene->planes[at->root],
                                    .root = at->root};
     struct gather_light light = final_gather_at(at->gather, &points, at->seed, n, false);
-    return (struct estimate){light.lamps.band[0], rgb_sum(light.variance) / BANDS};
+    return (struct estimate){light.straight.band[0], rgb_sum(light.variance) / BANDS};
 }
 
 /* Step 3: the sum over all leaves, if nothing stands in the way. */

@@ -223,7 +223,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
         mesh = shading_at(shading, shading->lamps, view->roots[0], w);
     }
     for (int c = 0; c < BANDS; c++) {
-        double h = light.lamps.band[c] + light.rest.band[c];
+        double h = light.straight.band[c] + light.rest.band[c];
         double b = m->reflectance.band[c] * h;
         shown.band[c] = other.band[c] + b;
         pixel->sum.band[c] += seen.band[c] * shown.band[c];

@@ -50,7 +50,7 @@ static void end(struct solver *solver)
     alloc_free(beyond->descent);
     alloc_free(beyond->answer->error);
     alloc_free(beyond->answer->straight);
-    alloc_free(beyond->answer->outside);
+    alloc_free(beyond->answer->open);
     final_gather_destroy(beyond->answer->gather);
     alloc_free(beyond->answer);
     alloc_free(beyond);

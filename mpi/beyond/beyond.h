@@ -22,7 +22,7 @@ struct answer {
                              leaves and all bands, W/m^2; NULL: there is no answer */
     struct rgb *straight; /* [patches] light straight from lamps, as a leaf reflects it,
                              W/m^2; NULL: there is no answer */
-    float *outside;       /* [patches] share of a leaf outside of things on it and of
+    float *open;          /* [patches] share of a leaf outside of things on it and of
                              narrow gaps, 1; NULL: there is no answer */
     struct final_gather *gather; /* without its rows, for light at any point; NULL: there
                                     is no answer */

@@ -96,7 +96,7 @@ static void share_met(struct gathering *g)
     share_field(g, offsetof(struct gather_row, cover), sizeof *e->covers, covers);
     for (int64_t i = 0; i < e->count; i++)
         memcpy(&e->covers[i], &covers[i], sizeof *e->covers);
-    equation_find_seen(e);
+    equation_find_outside(e);
     g->balance = balance_start(e, crossed);
     alloc_free(covers);
 }
@@ -275,16 +275,16 @@ static void share_answer(struct gathering *g, struct rgb *light)
 {
     struct answer *answer = g->solver->beyond->answer;
     size_t patches = (size_t)g->solver->model.forest->count;
-    share_field(g, offsetof(struct gather_row, lamps), sizeof *light, light);
+    share_field(g, offsetof(struct gather_row, straight), sizeof *light, light);
     alloc_free(answer->straight);
-    alloc_free(answer->outside);
+    alloc_free(answer->open);
     answer->straight = alloc_array(patches, sizeof *answer->straight);
-    answer->outside = alloc_array(patches, sizeof *answer->outside);
+    answer->open = alloc_array(patches, sizeof *answer->open);
     for (int64_t i = 0; i < g->equation.count; i++) {
         struct rgb rho = equation_material(&g->equation, i)->reflectance;
         for (int c = 0; c < BANDS; c++)
             answer->straight[g->mesh.leaves[i]].band[c] = rho.band[c] * light[i].band[c];
-        answer->outside[g->mesh.leaves[i]] = g->equation.covers[i].open;
+        answer->open[g->mesh.leaves[i]] = g->equation.covers[i].open;
     }
 }
 

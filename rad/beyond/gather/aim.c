@@ -382,12 +382,12 @@ void receiver_aim_at_bright(struct receiver *r)
 void receiver_aim(struct receiver *r)
 {
     aim_at_cut(r, r->gather->aims->lamp_cuts, r->segments);
-    r->row->lamps = r->light;
+    r->row->straight = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
     if (r->gather->aims->panes) {
-        struct rgb before = r->row->lamps;
+        struct rgb before = r->row->straight;
         aim_at_cut(r, r->gather->aims->window_cuts, r->segments);
-        r->through = rgb_sub(r->light, rgb_sub(r->row->lamps, before));
+        r->through = rgb_sub(r->light, rgb_sub(r->row->straight, before));
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
     }
     memcpy(r->row->of_segments, r->row->chance, sizeof r->row->of_segments);

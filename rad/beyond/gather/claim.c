@@ -53,7 +53,7 @@ void claim_by_mesh(const struct equation *e, struct rgb *variance)
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct vec3 from = gather->near->leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
-            double off = FACTORS * gather->rows[row].lamps.band[c];
+            double off = FACTORS * gather->rows[row].straight.band[c];
             variance[row].band[c] = off * off;
         }
         for (; k < gather->rows[row].end; k++) {

@@ -54,6 +54,7 @@ struct equation equation_start(struct final_gather *gather,
     e.near = alloc_array(count, sizeof *e.near);
     e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
     e.radiosity = alloc_array((size_t)forest->count, sizeof *e.radiosity);
+    e.outside = alloc_array((size_t)forest->count, sizeof *e.outside);
     for (int64_t i = 0; i < mesh->count; i++)
         e.areas[i] = forest_area(forest, mesh->leaves[i]);
     return e;
@@ -66,6 +67,7 @@ void equation_free(struct equation *e)
     alloc_free(e->near);
     alloc_free(e->fired);
     alloc_free(e->radiosity);
+    alloc_free(e->outside);
 }
 
 /* --- rows --- */
@@ -103,17 +105,17 @@ void equation_number_near(struct equation *e)
     alloc_free(number);
 }
 
-void equation_find_seen(struct equation *e)
+void equation_find_outside(struct equation *e)
 {
     const struct forest *forest = e->gather->model->forest;
     const int32_t *place = e->gather->place;
-    double *seen = e->gather->near->seen;
+    double *share = e->outside;
     for (int64_t i = 0; i < e->count; i++)
-        seen[equation_place(e, i)] = (double)e->covers[i].outside;
+        share[equation_place(e, i)] = (double)e->covers[i].outside;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
         const struct patch *patch = &forest->patches[e->gather->order[i]];
         for (int k = 0; k < 4 && !patch_is_leaf(patch); k++)
-            seen[i] += 0.25 * seen[place[patch->children + k]];
+            share[i] += 0.25 * share[place[patch->children + k]];
     }
 }
 
@@ -129,29 +131,31 @@ double equation_shining_area(const struct equation *e, int64_t leaf)
 
 /* --- what rows see --- */
 
-/* The pull: inner patches get the mean of their leaves, by the visible shares of these,
- * and patches without a visible share get B of their parents, unless a thing is across
- * these: slopes between neighbours do not know of others. By place. */
-static void pull(const struct final_gather *gather, struct rgb *radiosity)
+/* The pull: inner patches get the mean of their leaves, by the shares of these outside of
+ * things. Patches without such a share get B of their parents, unless a thing is across
+ * these: slopes between neighbours do not know of others. */
+static void pull(struct equation *e)
 {
+    const struct final_gather *gather = e->gather;
     const struct forest *forest = gather->model->forest;
-    const double *seen = gather->near->seen;
+    const double *share = e->outside;
+    struct rgb *radiosity = e->radiosity;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
         const struct patch *patch = &forest->patches[gather->order[i]];
-        if (patch_is_leaf(patch) || !(seen[i] > 0.0))
+        if (patch_is_leaf(patch) || !(share[i] > 0.0))
             continue;
         for (int c = 0; c < BANDS; c++) {
             double sum = 0.0;
             for (int k = 0; k < 4; k++) {
                 int32_t child = gather->place[patch->children + k];
-                sum += seen[child] * radiosity[child].band[c];
+                sum += share[child] * radiosity[child].band[c];
             }
-            radiosity[i].band[c] = 0.25 * sum / seen[i];
+            radiosity[i].band[c] = 0.25 * sum / share[i];
         }
     }
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t parent = forest->patches[gather->order[i]].parent;
-        if (!(seen[i] > 0.0) && parent >= 0 && !(gather->cut && gather->cut[parent]))
+        if (!(share[i] > 0.0) && parent >= 0 && !(gather->cut && gather->cut[parent]))
             radiosity[i] = radiosity[gather->place[parent]];
     }
 }
@@ -160,7 +164,7 @@ void equation_set(struct equation *e, const struct rgb *b)
 {
     for (int64_t i = 0; i < e->count; i++)
         e->radiosity[equation_place(e, i)] = b[i];
-    pull(e->gather, e->radiosity);
+    pull(e);
 }
 
 void equation_show(struct equation *e, const struct rgb *b, bool lamps)
@@ -179,7 +183,7 @@ void equation_show(struct equation *e, const struct rgb *b, bool lamps)
         for (int c = 0; c < BANDS; c++)
             e->radiosity[equation_place(e, e->near[k].leaf)].band[c] *=
                 e->near[k].shown.band[c];
-    pull(e->gather, e->radiosity);
+    pull(e);
 }
 
 void equation_show_means(struct equation *e, const struct rgb *b)

@@ -28,6 +28,7 @@ struct equation {
     int64_t near_count;
     int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
     struct rgb *radiosity;  /* by place: as rows see them */
+    double *outside;        /* by place: shares of patches outside of things, 1 */
 };
 
 /* Borrows gather and mesh, which has leaves, and rays for each. */
@@ -70,8 +71,8 @@ void equation_make_row(void *equation, int64_t leaf);
  * over ranks. */
 void equation_number_near(struct equation *e);
 
-/* Finds the visible shares of patches. Pre: e->covers are of all rows. */
-void equation_find_seen(struct equation *e);
+/* Finds the shares of patches outside of things. Pre: e->covers are of all rows. */
+void equation_find_outside(struct equation *e);
 
 /* Makes e->radiosity the radiosities `b`, by leaf, and the means of these over inner
  * patches. */

@@ -50,7 +50,6 @@ static struct gather_nears *nears_create(const struct model *model,
     struct gather_nears *near = alloc_array(1, sizeof *near);
     near->unit_area = 0x1p-50 * model->area;
     near->unit_watts = 0x1p-52 * power;
-    near->seen = alloc_array(count, sizeof *near->seen);
     near->items = alloc_array(count, sizeof *near->items);
     return near;
 }
@@ -142,7 +141,6 @@ void final_gather_destroy(struct final_gather *gather)
     alloc_free(gather->view->faced);
     alloc_free(gather->view->overlapped);
     alloc_free(gather->view);
-    alloc_free(gather->near->seen);
     alloc_free(gather->near->paths);
     alloc_free(gather->near->leaves);
     alloc_free(gather->near);

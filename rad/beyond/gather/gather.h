@@ -60,7 +60,6 @@ struct gather_nears {
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
-    double *seen; /* [forest->count] by place: shares outside of things, 1 */
 };
 
 /* Work of this rank. */

@@ -187,7 +187,7 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
     if (senders->sent) {
         struct rgb all = {{factor, factor, factor}};
         r->bright += factor;
-        rgb_add(&r->row->lamps, 1.0, see_through(r, walk.at, y, all, seed, true));
+        rgb_add(&r->row->straight, 1.0, see_through(r, walk.at, y, all, seed, true));
     } else if (senders->reflect) {
         receiver_see(r, x, y, patch, factor, seed);
     } else {

@@ -55,7 +55,7 @@ void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
     r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
     gather->sums->count = gather->sums->first = 0;
     if (exact && receiver_add_exact(&r)) {
-        row.lamps = light_of_lamps(&r);
+        row.straight = light_of_lamps(&r);
     } else {
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         gather->sums->count = gather->sums->first = 0; /* of this row alone */
@@ -86,7 +86,7 @@ struct gather_light final_gather_at(struct final_gather *gather,
         light.variance.band[c] = row.chance[c];
         light.halves.band[c] = row.halves[c];
     }
-    light.lamps = row.lamps;
+    light.straight = row.straight;
     light.rest = sums.h;
     light.by_chance = r.by_chance;
     return light;

@@ -6,7 +6,7 @@
 
 /* The mean irradiance of points, W/m^2. */
 struct gather_light {
-    struct rgb lamps; /* emission straight from lamps */
+    struct rgb straight; /* emission straight from lamps */
     struct rgb rest;  /* all other light; 0 unless asked for */
     struct rgb variance; /* of both, if segments and rays were chosen by chance,
                             (W/m^2)^2 */

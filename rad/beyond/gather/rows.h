@@ -30,7 +30,7 @@ struct gather_row {
     int32_t leaf;
     int64_t end;       /* of its terms, which begin at the end of the row before */
     struct rgb source; /* irradiance from lamps, W/m^2 */
-    struct rgb lamps;  /* irradiance straight from lamps, W/m^2 */
+    struct rgb straight; /* irradiance straight from lamps, W/m^2 */
     double chance[BANDS]; /* variance of H if rays and segments were chosen by chance,
                              (W/m^2)^2, for the solution's radiosities */
     double of_segments[BANDS]; /* the part of `chance` by segments to lamps */

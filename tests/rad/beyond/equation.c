@@ -30,7 +30,7 @@ static double absorbed_part(struct scene *scene, double first, double *off)
         e.covers[i] = gather->rows[i].cover;
     }
     equation_number_near(&e);
-    equation_find_seen(&e);
+    equation_find_outside(&e);
     struct light_balance balance = balance_start(&e, gather->counts.crossed);
     struct rgb *b = alloc_array(2 * (size_t)e.count, sizeof *b), *h = b + e.count;
     for (int k = 0; k < REFLECTIONS; k++) {

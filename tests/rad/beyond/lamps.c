@@ -342,7 +342,7 @@ static void test_window(bool sill)
     double exact = point_polygon_factor(floor, z, window, 4), sum = 0.0, squares = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
         struct rgb h =
-            final_gather_at(g.gather, &points, run, SEGMENTS, false).lamps;
+            final_gather_at(g.gather, &points, run, SEGMENTS, false).straight;
         double off = h.band[0] / exact - 1.0;
         sum += off / RUNS;
         squares += off * off / RUNS;
@@ -361,7 +361,7 @@ static double sum_of_runs(struct trial *g, const struct gather_points *points,
 {
     double sum = 0.0;
     for (uint64_t run = 0; run < 32; run++)
-        sum += final_gather_at(g->gather, points, run, segments, false).lamps.band[0];
+        sum += final_gather_at(g->gather, points, run, segments, false).straight.band[0];
     return sum;
 }
 
@@ -394,7 +394,7 @@ static void test_sky_behind_window(void)
     for (uint64_t run = 0; run < RUNS; run++) {
         struct gather_light light =
             final_gather_at(g.gather, &points, run, SEGMENTS, false);
-        double off = light.lamps.band[0] / exact - 1.0;
+        double off = light.straight.band[0] / exact - 1.0;
         sum += off / RUNS;
         square += off * off / RUNS;
         claimed = fmin(claimed, sqrt(rgb_sum(light.variance) / BANDS) / exact);
