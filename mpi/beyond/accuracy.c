@@ -45,15 +45,12 @@ static const double AIM = 0.85, SMALLEST_EPSILON = 1e-10;
  * cheaply. */
 enum { RAYS_FACTOR_MOST = 8 };
 
-/* Noise with twice the rays over noise now. */
-static const double NOISE_OF_TWICE = 0.66;
-
 /* Epsilon is multiplied in a round by at most this, and at least. */
 static const double EPSILON_FACTOR_MOST = 0.5, EPSILON_FACTOR_LEAST = 0.125;
 
-/* Epsilon does not help if it was lowered to LOWERED and STUCK of the mesh's error is
- * left. */
-static const double LOWERED = 0.125, STUCK = 0.9;
+/* Epsilon does not help if it was lowered by EPSILON_FACTOR_LEAST and STUCK of the mesh's
+ * error is left. */
+static const double STUCK = 0.9;
 
 /* Where limits keep this share of the leaves from being split: NEARLY_ALL_HELD, there is
  * no finer mesh; MANY_HELD, the limits are the reason why epsilon does not help or needs
@@ -127,7 +124,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
         return HOLD_MEMORY;
     if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
-    bool stuck = (epsilon <= LOWERED * accuracy->coarse_epsilon &&
+    bool stuck = (epsilon <= EPSILON_FACTOR_LEAST * accuracy->coarse_epsilon &&
                   part_by_mesh(&solver->beyond->answer->counts) >
                       STUCK * accuracy->coarse) ||
                  epsilon * EPSILON_FACTOR_MOST < SMALLEST_EPSILON;
@@ -167,7 +164,7 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
     for (double left = part_by_rays(&solver->beyond->answer->counts);
          left > allowed && criterion->final_gather < RAYS_FACTOR_MOST * before &&
          hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
-         left *= NOISE_OF_TWICE)
+         left *= sqrt(0.5)) /* as if by chance */
         criterion->final_gather *= 2;
     solver->memory.rays = criterion->final_gather;
     return criterion->final_gather > before;
@@ -180,7 +177,7 @@ static void lower_epsilon(struct solver *solver, double allowed)
     double mesh = part_by_mesh(&solver->beyond->answer->counts), part = allowed / mesh;
     double lower = fmax(EPSILON_FACTOR_LEAST, part * part * part);
     lower = fmin(EPSILON_FACTOR_MOST, lower);
-    bool much = criterion->epsilon <= LOWERED * accuracy->coarse_epsilon;
+    bool much = criterion->epsilon <= EPSILON_FACTOR_LEAST * accuracy->coarse_epsilon;
     if (accuracy->clear && (much || accuracy->coarse == 0.0)) {
         accuracy->coarse = mesh;
         accuracy->coarse_epsilon = criterion->epsilon;
