@@ -309,6 +309,12 @@ mixed() { # a furnished room, half of whose faces have half of the reflectance
     block .38 .4 .4 .58 .6 .65
 }
 
+black_body() { # RHO: a furnace with a black thing in it
+    closed 1 "$1"
+    paint black 0 1
+    block .38 .4 .4 .58 .6 .65
+}
+
 picture() { # RHO: so close to a wall that paths have more than a hundred points
     closed 1 "$1"
     block .0005 .4 .4 .005 .6 .6
