@@ -11,6 +11,7 @@
 
 #include "geom/stop.h"
 #include "tools/input.h"
+#include "tools/viewfactors/bodies.h"
 #include "tools/viewfactors/pairs.h"
 #include "tools/viewfactors/table.h"
 
@@ -61,6 +62,21 @@ static double add_in_rounds(struct run *run, struct viewfactors *factors)
             round == ROUNDS)
             return error;
         viewfactors_refine(factors, accuracy);
+    }
+}
+
+/* Sets all pairs of groups by rays, four times as many in each round. Returns the largest
+ * error of F; stops at a signal. */
+static double fire_in_rounds(struct run *run, struct viewfactors *factors)
+{
+    double accuracy = run->options.criterion.accuracy, error = 0.0;
+    for (int64_t rays = BODIES_RAYS;; rays *= 4) {
+        bodies_set(&run->comm, factors, rays);
+        if (!run_goes_on(run))
+            return 0.0;
+        error = viewfactors_error(factors);
+        if (error <= accuracy || 4 * rays > BODIES_RAYS_MOST)
+            return error;
     }
 }
 
@@ -126,7 +142,8 @@ static void tabulate(struct run *run, bool dense)
             (long long)run->scene->input_count, (long long)run->scene->groups.count);
     struct viewfactors *factors = viewfactors_create(
         run->scene, run->octree, criterion->epsilon, criterion->max_level);
-    double error = add_in_rounds(run, factors);
+    bool by_rays = criterion->accuracy > 0.0 && bodies_are_meant(factors);
+    double error = by_rays ? fire_in_rounds(run, factors) : add_in_rounds(run, factors);
     if (run->error.code == EXIT_DONE && run->comm.rank == 0) {
         table_print(factors, dense, stdout);
         stop_check(&run->error);

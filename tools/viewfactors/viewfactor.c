@@ -372,6 +372,17 @@ void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet 
     factors->errors[place] += flux_from_watts(
         error_unit_of(factors, i, j), pair.variance + square(pair.error / LIMIT));
 }
+
+void viewfactors_set(struct viewfactors *factors, int32_t i, int32_t j, double exchange,
+                     double variance)
+{
+    int64_t place = place_of(factors, i, j);
+    double ways = i == j ? 2.0 : 1.0; /* see exchange_between() */
+    factors->sums[place] = flux_from_watts(unit_of(factors, i, j), exchange / ways);
+    factors->errors[place] =
+        flux_from_watts(error_unit_of(factors, i, j), variance / (ways * ways));
+}
+
 /* Returns G_ij by the pairs added so far, square scene units. */
 static double exchange_between(const struct viewfactors *factors, int32_t i, int32_t j)
 {

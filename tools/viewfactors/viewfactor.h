@@ -47,6 +47,11 @@ void viewfactors_destroy(struct viewfactors *factors);
 void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
                      int32_t q, const struct facet *fq);
 
+/* Sets the exchange of two groups, square scene units, and its variance, in place of what
+ * was added. Pre: both have an area. */
+void viewfactors_set(struct viewfactors *factors, int32_t i, int32_t j, double exchange,
+                     double variance);
+
 /* Returns F_ij by the pairs added so far; 0 for a group without area. */
 double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t j);
 
