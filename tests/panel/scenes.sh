@@ -56,6 +56,20 @@ facing() { # HEIGHT RHO E E2 [SPECK]: unit squares; a small thing between, black
     sheet z -1 - -5 -5 5 5
 }
 
+facing_unlike() { # HEIGHT RHO RHO: the first shines
+    paint first "$2" 1
+    sheet z 0 + 0 0 1 1
+    paint second "$3" 0
+    sheet z "$1" - 0 0 1 1
+}
+
+coaxial() { # SIDES R R LENGTH: one tube in another, open at their ends
+    paint inner .5 1
+    walk "$1" "$2" "$4" "$2" 0
+    paint outer .5 0
+    walk "$1" "$3" 0 "$3" "$4"
+}
+
 discs() { # SIDES RHO
     paint lamp "$2" 1
     walk "$1" 0 0 1 0
