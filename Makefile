@@ -35,7 +35,9 @@
 #   make prove           long tests: `make check` on more ranks and by more compilers;
 #                        errors over six fourfold steps of epsilon; 500 random sets of
 #                        options; kills at forty moments
-#   make cycles          pictures beside those of Blender's Cycles, where it is installed
+#   make corpus          build/corpus: scenes for other renderers, with right pictures
+#                        and the standard errors of their pixels
+#   make cycles          these beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only), or
 #                        that of CASE=NAME
 #   make pace            renews the instructions of runs in tests/pace (on purpose only)
@@ -325,8 +327,12 @@ panel: errors $(JUDGES:%=$(BUILD)/%) $(PHR) pathtracer build/viewfactors build/r
 	@BEFORE="$(BEFORE)" SCENES="$(SCENES)" MPIEXEC="$(MPIEXEC)" MAKE="$(MAKE)" \
 	    BUILD="$(BUILD)" PHR="./$(PHR)" sh tests/panel/panel.sh
 
-# About ten minutes, nearly all for Blender's pictures, which are kept in $(BUILD)/cycles.
-cycles: $(PHR) $(IMGDIFF) build/room
+# Three to ten minutes on two cores.
+corpus: $(PHR)
+	@MPIEXEC="$(MPIEXEC)" PHR="./$(PHR)" sh tests/corpus.sh
+
+# Some minutes more, for Blender's pictures.
+cycles: corpus $(IMGDIFF)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/cycles.sh
 
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder
@@ -373,5 +379,5 @@ FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
     pages ablation numbers stability docs course exercise film answers \
-    panel check-long prove cycles golden pace portability fuzz install \
+    panel check-long prove corpus cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE

@@ -149,6 +149,35 @@ static double deviation(const struct block *block, const struct image *a,
     return mean == 0.0 ? 0.0 : mean / sqrt(variance);
 }
 
+/* How much b changes from pixel to pixel, to the right or down. */
+static double slope(const struct image *b, int x, int y, int band, bool down)
+{
+    int x1 = down || x + 1 == b->width ? x : x + 1, x0 = down || x == 0 ? x : x - 1;
+    int y1 = !down || y + 1 == b->height ? y : y + 1, y0 = !down || y == 0 ? y : y - 1;
+    return (double)pixel_at(b, x1, y1)[band] - (double)pixel_at(b, x0, y0)[band];
+}
+
+/* How far a is moved to the right, or down, over the standard error of that: a - b as a
+ * multiple of the slope of b. (What a move makes at edges is noise to deviation().) */
+static double movement(const struct block *block, const struct image *a,
+                       const struct image *b, const struct image *error, int band,
+                       bool down)
+{
+    double sum = 0.0, squares = 0.0, alike = 0.0;
+    for (int y = block->first_y; y < block->end_y; y++)
+        for (int x = block->first_x; x < block->end_x; x++) {
+            double g = slope(b, x, y, band, down);
+            double expected = (double)pixel_at(b, x, y)[band];
+            double off = (double)pixel_at(a, x, y)[band] - expected;
+            double claim = (double)pixel_at(error, x, y)[band];
+            sum += g * off;
+            squares += g * g * (off * off + claim * claim);
+            alike += g * claim;
+        }
+    double variance = squares + alike * alike;
+    return variance > 0.0 && isfinite(variance) ? sum / sqrt(variance) : 0.0;
+}
+
 struct deviations compare_errors(const struct image *a, const struct image *b,
                                  const struct image *error, int side, double most,
                                  double limit, struct image *map)
@@ -165,12 +194,18 @@ struct deviations compare_errors(const struct image *a, const struct image *b,
                 double off = deviation(&at, a, b, error, c);
                 worst = fabs(off) > fabs(worst) ? off : worst;
             }
+            double moved = 0.0;
+            for (int c = 0; c < 3; c++)
+                moved = fmax(moved, fmax(fabs(movement(&at, a, b, error, c, false)),
+                                         fabs(movement(&at, a, b, error, c, true))));
             for (int c = 0; c < 3 && map; c++)
                 block_fill(&at, map, c, (float)fmax(-FLT_MAX, fmin(FLT_MAX, worst)));
             found.blocks++;
-            found.beyond += fabs(worst) > limit;
-            if (fabs(worst) > fabs(found.worst)) {
-                found.worst = worst;
+            found.unlike += fabs(worst) > limit;
+            found.beyond += fabs(worst) > limit || moved > limit;
+            if (fmax(fabs(worst), moved) > fabs(found.worst)) {
+                found.moved = moved > fabs(worst);
+                found.worst = found.moved ? moved : worst;
                 found.x = x;
                 found.y = y;
             }

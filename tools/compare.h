@@ -40,17 +40,21 @@ struct difference compare_images(const struct image *a, const struct image *b, i
 
 /* How far blocks of pixels are off, in standard errors. */
 struct deviations {
-    int64_t blocks, beyond; /* all; with a band that is off by more than `limit` */
-    double worst;           /* the largest of a band; above 0 where a is brighter */
-    int x, y;               /* first pixel of the worst block */
+    int64_t blocks; /* all of them */
+    int64_t unlike; /* with a band whose mean is off by more than `limit` */
+    int64_t beyond; /* these, and others that are moved by more */
+    double worst;   /* the largest of a band; below 0 where a is darker */
+    bool moved;     /* the worst is moved, and no mean */
+    int x, y;       /* first pixel of the worst block */
 };
 
-/* Compares the means of a and b over blocks of `side` by `side` pixels, the last of a row
- * or column with the pixels left over. `error`: one standard error of each pixel of b:
- * that of a block is at most their mean. Noise, of a in the main, is known by how the
- * differences scatter in a block. Blocks with a sample of b above `most` are left out.
- * `map`, of the same size, receives in all bands the deviation of the block's worst band;
- * or NULL. A sample that is not finite is beyond all limits. */
+/* Compares blocks of `side` by `side` pixels, the last of a row or column with the pixels
+ * left over: the means of a and b, and whether a is moved to a side. `error`: one
+ * standard error of each pixel of b: that of a block is at most their mean. Noise, of a
+ * in the main, is known by how the differences scatter in a block. Blocks with a sample
+ * of b above `most` are left out. `map`, of the same size, receives in all bands the
+ * deviation of the block's worst mean; or NULL. A sample that is not finite is beyond all
+ * limits. */
 struct deviations compare_errors(const struct image *a, const struct image *b,
                                  const struct image *error, int side, double most,
                                  double limit, struct image *map);

@@ -178,6 +178,33 @@ static const char *with_commas(int64_t number, char text[32])
     return text;
 }
 
+/* Says how much brighter A is as a whole, and names a slip that makes it so. Samples that
+ * are uncertain by more than a few percent, as at edges of lamps, count less. */
+static void tell_ratio(FILE *file, const struct image *a, const struct image *b,
+                       const struct image *errors)
+{
+    static const double UNSURE = 0.05;
+    static const struct {
+        double ratio;
+        const char *name;
+    } SLIPS[] = {{PI, "pi"}, {1.0 / PI, "1 / pi"}, {2.0, "2"}, {0.5, "a half"}};
+    double sum = 0.0, weights = 0.0;
+    for (int64_t i = 0; i < 3 * (int64_t)a->width * a->height; i++) {
+        double light = (double)b->rgb[i];
+        double part = (double)errors->rgb[i] / (UNSURE * light);
+        if (!(light > 0.0))
+            continue;
+        sum += (double)a->rgb[i] / light / (1.0 + part * part);
+        weights += 1.0 / (1.0 + part * part);
+    }
+    double ratio = sum / weights;
+    fprintf(file, "in all, A is %.4g times B", ratio);
+    for (size_t k = 0; k < sizeof SLIPS / sizeof *SLIPS; k++)
+        if (fabs(ratio / SLIPS[k].ratio - 1.0) < 0.02)
+            fprintf(file, ": a factor of %s?", SLIPS[k].name);
+    fprintf(file, "\n");
+}
+
 /* Compares blocks of all sizes, and makes false colours of the deviations of the smallest
  * if they are to be seen. `passed`: the pictures agree. */
 static bool diff_by_errors(const struct request *request, const struct image *a,
@@ -204,8 +231,10 @@ static bool diff_by_errors(const struct request *request, const struct image *a,
                     "worst %.2g at (%d, %d), %s\n", differs ? "differs" : "agrees",
                     with_commas(found.beyond, beyond), with_commas(found.blocks, blocks),
                     side, side, LIMIT, fabs(found.worst), found.x, found.y,
-                    found.worst < 0.0 ? "darker" : "brighter");
+                    found.moved ? "moved" : found.worst < 0.0 ? "darker" : "brighter");
     }
+    if (!*passed)
+        tell_ratio(file, a, b, errors);
     if (output->path && format_has_tone(output->format))
         scale_paint(&scale, map);
     return true;

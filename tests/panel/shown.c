@@ -210,7 +210,7 @@ int main(int argc, char **argv)
         if (argc == 5) {
             struct deviations off = compare_errors(&image[1], &image[0], &image[3], FINE,
                                                    HUGE_VAL, 2.0, NULL);
-            printf(" %.3g\n", 100.0 - 100.0 * (double)off.beyond / (double)off.blocks);
+            printf(" %.3g\n", 100.0 - 100.0 * (double)off.unlike / (double)off.blocks);
         } else {
             printf(" -\n");
         }
