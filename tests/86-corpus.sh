@@ -56,6 +56,16 @@ is_seen() {
 }
 names() { grep -q "times B: a factor of $1?" "$work/words"; }
 
+# Pictures by the defaults, and their own errors.
+for name in 1 1.02; do
+    edited shadow mtl '$1 == "newmtl" { wall = $2 == "wall" }
+        wall && $1 == "Kd" { $2 *= '$name'; $3 = $4 = $2 } { print }'
+    "$PHR" "$work/made.obj" --quiet --view "$work/made.view" -o "$work/$name.pfm" \
+        -o "$work/$name.error.pfm"
+done
+check "a picture by the defaults agrees by its own error" agrees 1 "$work/shadow.pfm"
+check "one of another reflectance does not" is_seen 1.02 "$work/shadow.pfm"
+
 slip "a lamp of Ke times pi" shadow mtl '$1 == "Ke" { $2 *= pi; $3 *= pi; $4 *= pi }
     BEGIN { pi = atan2(0, -1) } { print }'
 check "and named" names pi

@@ -68,7 +68,8 @@ bool show_check(struct run *run)
     for (int i = 0; i < run->options.output_count && (colours || !error); i++)
         if (run->options.outputs[i].format == FORMAT_ERROR)
             return error_set(&run->error, EXIT_USAGE,
-                             "%s: only pictures of light after a final gather have errors",
+                             "%s: only pictures of light after a final gather have "
+                             "errors",
                              run->options.outputs[i].path);
     if (show == SHOW_ERROR && !error)
         return error_set(&run->error, EXIT_USAGE,

@@ -10,8 +10,8 @@
 #include "io/run/target.h"
 #include "io/scene/binary.h"
 
-/* Writes the format of the target: PFM (errors, too) and HDR, linear; or PPM and PNG, the 8-bit codes
- * of `tone`. Pre: the target is no mesh. Errors: as output_close(). */
+/* Writes the format of the target: PFM (errors, too) and HDR, linear; or PPM and PNG, the
+ * 8-bit codes of `tone`. Pre: the target is no mesh. Errors: as output_close(). */
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error);
 
