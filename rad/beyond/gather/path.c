@@ -4,8 +4,9 @@
  * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
  * point met receives light from a lamp, by one segment, and from one more ray, until a
  * ray ends far enough away: a path tracer for near surfaces, and radiosity for the rest.
- * One more ray is aimed at a pane: else single leaves shine. In pixels one ray is aimed at a bright patch from there, too: else single pixels shine
- * along all edges of a room. */
+ * One more ray is aimed at a pane: else single leaves shine. In pixels one ray is aimed
+ * at a bright patch from there, too: else single pixels shine along all edges of a
+ * room. */
 #include "rad/beyond/gather/path.h"
 
 #include <math.h>
@@ -196,12 +197,12 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
     }
 }
 
-/* Adds `weight` times the light behind panes, by one ray to one of them from x, just above
- * the point. */
+/* Adds `weight` times the light behind panes, by one ray to one of them from x, just
+ * above the point. */
 static void look_through(struct receiver *r, const struct point *point, struct vec3 x,
                          struct rgb weight, uint64_t seed)
 {
-    struct target pane;
+    struct aimed pane;
     if (!r->gather->aims->panes ||
         !receiver_choose_beside(r, r->gather->aims->window_cuts, point->at,
                                 point->normal, point->patch, seed, &pane))
