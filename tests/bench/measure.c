@@ -66,7 +66,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     if (measure->options.pixels)
         return NULL;
     return shading_create(forest, s->octree, answer->straight, answer->error,
-                          answer->outside);
+                          answer->open);
 }
 
 /* --- the line --- */
