@@ -11,12 +11,14 @@
 #include "geom/hash.h"
 #include "geom/lambert.h"
 #include "rad/beyond/gather/exact.h"
+#include "rad/beyond/gather/look.h"
 #include "rad/beyond/gather/row.h"
 #include "rad/beyond/gather/rows.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-enum { POINTS = 32, TRIALS = 8, MOST = 1024, TRUE_RAYS = 1 << 14, TRUE_SEGMENTS = 1024 };
+enum { POINTS = 32, TRIALS = 8, MOST = 1024, TRUE_RAYS = 1 << 14, TRUE_SEGMENTS = 1024,
+       LOOKED = 4 };
 
 enum way { RAYS, SEQUENCE, LIGHT, SEEN, PHR, EXACT, WAYS };
 
@@ -107,7 +109,7 @@ static double by_segment(const struct place *at, struct choice lamp, double u, d
 }
 
 /* The light of node k of a cut by which it is chosen. `upto` has shares that are seen in
- * it, by their root: the share of 16 segments is a guess. */
+ * it, by their root: the share of few segments is a guess. */
 static double light_of(const struct cut_node *nodes, int64_t k, bool seen)
 {
     double light = nodes[k].upto - (k > 0 ? nodes[k - 1].upto : 0.0);
@@ -137,7 +139,7 @@ static struct choice choose(const struct cuts *cuts, struct cut cut, double u, b
 static struct estimate by_segments(const struct place *at, int n, bool seen)
 {
     struct cuts *cuts = at->gather->aims->lamp_cuts;
-    struct cut cut = cuts_at(cuts, at->leaf, &at->model->counts);
+    struct cut cut = cuts_at(cuts, at->leaf);
     struct estimate sums = {0.0, 0.0};
     for (int i = 0; i < n; i++) {
         double u[SEQUENCE_DIMENSIONS];
@@ -236,6 +238,19 @@ static void print_errors(struct place *at, const double *truth, int n, bool open
     printf("\n");
 }
 
+/* Looks at the leaves of the first two triangles, which tells how much of the lamps is
+ * seen. */
+static void look_around(struct final_gather *gather)
+{
+    const struct forest *forest = gather->model->forest;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    cuts_count(gather->aims->lamp_cuts);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        if (forest->patches[leaf].id.root < 2)
+            final_gather_look(gather, leaf, LOOKED);
+    cuts_learn(gather->aims->lamp_cuts);
+}
+
 int main(int argc, char **argv)
 {
     struct run run = {0};
@@ -244,6 +259,7 @@ int main(int argc, char **argv)
         struct final_gather *gather =
             final_gather_create(&run.solver->model, MOST, NULL,
                                 lit_find(&run.solver->model));
+        look_around(gather);
         bool open = final_gather_root_is_open(gather, 0, true) &&
                     final_gather_root_is_open(gather, 1, true);
         struct place at[POINTS];

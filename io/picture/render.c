@@ -14,13 +14,12 @@
  * leaf counted as covered but visible, as the side of a book standing out from its
  * neighbours; on a steep leaf, in the housing of a lamp. All points of a pixel on one
  * triangle are gathered together, by few segments; again by more as long as these are
- * noisy. Few segments may all arrive, or all miss, and seem sure, where lamps are seen in
- * part from around (cuts.h), or are more than the segments, as the facets of a ball: so
- * by more, too, where the mesh has another light of lamps there.
+ * noisy. Few segments may all arrive, or all miss, and seem sure: so by more, too, where
+ * the mesh has another light of lamps there.
  *
  * The standard error of a pixel is the root of four parts, squared and added up: that of
  * the mesh's light, which is claimed for its leaves; the noise of segments and rays; what
- * lamps' light is apart from the mesh's where few segments may agree by chance; and what
+ * lamps' light is apart from the mesh's, as few segments may agree by chance; and what
  * n camera rays tell of the edges in a pixel, whose variance is n^-3/2 times that of the
  * light they meet.
  *
@@ -50,10 +49,10 @@ enum {
 };
 
 /* A pixel is unsure if the deviation of its light by chance exceeds NOISE, or its
- * difference from the mesh's light exceeds APART. Both are relative to the geometric mean
- * of its light and the mean light reflected in its space, since a display shows
- * differences by the root of light. .015 are about one code of 255. */
-static const double NOISE = 0.015, APART = 0.01; /* 1 */
+ * difference from the mesh's light does. Both are relative to the geometric mean of its
+ * light and the mean light reflected in its space, since a display shows differences by
+ * the root of light. .015 are about one code of 255. */
+static const double NOISE = 0.015; /* 1 */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
                               struct final_gather *gather)
@@ -78,8 +77,8 @@ struct pixel_roots {
 /* Light of a pixel; the last three fields are for its error alone. */
 struct pixel_light {
     struct rgb sum;   /* of the radiosities met by the camera rays, W/m^2 */
-    struct rgb apart; /* excess of lamps' light over the mesh's, where segments may agree
-                         by chance */
+    struct rgb apart; /* excess of lamps' light over the mesh's, where only these are
+                         gathered */
     double variance;  /* of `sum` by chance, over bands, (W/m^2)^2 */
     struct rgb noise;   /* variance of `sum` by the sequences, (W/m^2)^2 */
     struct rgb squares; /* sum of the squared radiosities, (W/m^2)^2 */
@@ -227,11 +226,12 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
         double b = m->reflectance.band[c] * h;
         shown.band[c] = other.band[c] + b;
         pixel->sum.band[c] += seen.band[c] * shown.band[c];
-        if (light.by_chance && !whole)
+        if (!whole)
             pixel->apart.band[c] += seen.band[c] * (b - mesh.band[c]);
         rho = fmax(rho, m->reflectance.band[c]);
     }
-    pixel->variance += count * count * rho * rho * rgb_sum(light.variance);
+    if (whole || rgb_sum(light.straight) > 0.0 || rgb_sum(mesh) > 0.0)
+        pixel->variance += count * count * rho * rho * rgb_sum(light.variance);
     for (int c = 0; c < BANDS; c++)
         pixel->noise.band[c] += seen.band[c] * seen.band[c] * m->reflectance.band[c] *
                                 m->reflectance.band[c] * variance_of(&light, rays, c);
@@ -332,7 +332,7 @@ static int more_for(const struct renderer *renderer, const struct pixel_light *p
     double mean = renderer->brighter * gather->lit[space].reflected;
     double square = rgb_sum(pixel->sum) * view->count * mean;
     double noise = pixel->variance / (NOISE * NOISE * square);
-    double apart = now > 1 ? 0.0 : rgb_sum(pixel->apart) / APART;
+    double apart = now > 1 ? 0.0 : rgb_sum(pixel->apart) / NOISE;
     int most = renderer->rays / SEGMENTS, least = ENOUGH / SEGMENTS;
     if (!(noise > 1.0) && apart * apart <= square)
         return now;

@@ -117,8 +117,10 @@ static struct gather_look *look(struct solver *solver, struct meshing *meshing,
                             .context = &l, .work = work, .count = count};
     l.looks = alloc_array((size_t)count, sizeof *looks);
     final_gather_renew(meshing->gather);
-    stages_make_cuts(solver, meshing->gather, leaves, NULL, count);
     stages_run(&stages);
+    struct cuts *cuts = meshing->gather->aims->lamp_cuts;
+    comm_add(comm, cuts->tally, 2 * cuts->count);
+    cuts_learn(cuts);
     memmove(l.looks + stages.at[comm->rank], l.looks, (size_t)l.count * sizeof *looks);
     comm_share(comm, l.looks, stages.counts, stages.at, sizeof *looks);
     for (int64_t i = 0; i < count; i++)
@@ -146,7 +148,7 @@ static int64_t patches_most(const struct memory *memory, int64_t links)
 bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *mesh)
 {
     struct model *model = &solver->model;
-    struct final_gather *gather =
+    struct final_gather *gather = mesh->gather =
         final_gather_create(model, model->criterion.final_gather, NULL, lit_find(model));
     uint8_t *open = find_open_roots(solver, gather);
     struct meshing meshing = {.model = model, .gather = gather, .mesh = mesh,
@@ -155,6 +157,8 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
     meshing_begin(&meshing);
     int64_t count = 0;
     int32_t *leaves = meshing_looks(&meshing) ? meshing_choose(&meshing, &count) : NULL;
+    if (count > 0)
+        cuts_count(gather->aims->lamp_cuts);
     for (int round = 0; round < ROUNDS && count > 0; round++) {
         progress_begin(solver->progress, "looking", round, 0);
         struct gather_look *looks = look(solver, &meshing, leaves, count);
@@ -166,6 +170,5 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
     comm_add(solver->comm, &stopped, 1);
     alloc_free(leaves);
     alloc_free(open);
-    final_gather_destroy(gather);
     return stopped == 0;
 }

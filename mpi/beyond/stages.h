@@ -1,4 +1,4 @@
-/* Looks and rows of the final gather, dealt to ranks in stages; cuts, made for all. */
+/* Looks and rows of the final gather, dealt to ranks in stages. */
 #ifndef MPI_BEYOND_STAGES_H
 #define MPI_BEYOND_STAGES_H
 
@@ -27,10 +27,5 @@ struct stages {
  * as done. */
 void stages_run(struct stages *stages);
 void stages_free(struct stages *stages);
-
-/* Collective. Makes the cuts of the regions of leaves, each on one rank for all. `exact`,
- * [count]: leaves needing none; NULL: all need cuts. Pre: the gather is as renewed. */
-void stages_make_cuts(struct solver *solver, struct final_gather *gather,
-                      const int32_t *leaves, const bool *exact, int64_t count);
 
 #endif

@@ -105,13 +105,14 @@ static void share_met(struct gathering *g)
 static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
-    const struct gather_mesh *mesh = &g->mesh;
-    g->gather = final_gather_create(&solver->model, solver->model.criterion.final_gather,
-                                    mesh->cut, lit_find(&solver->model));
+    struct gather_mesh *mesh = &g->mesh;
+    g->gather = mesh->gather;
+    mesh->gather = NULL;
+    g->gather->cut = mesh->cut;
+    final_gather_renew(g->gather);
     g->equation = equation_start(g->gather, mesh);
     g->all = alloc_array((size_t)mesh->count, sizeof *g->all);
     progress_begin(solver->progress, "gathering", -1, 0);
-    stages_make_cuts(solver, g->gather, mesh->leaves, mesh->exact, mesh->count);
     g->stages = (struct stages){.solver = solver, .gather = g->gather,
                                 .act = equation_make_row, .context = &g->equation,
                                 .work = mesh->work, .count = mesh->count};
@@ -305,8 +306,6 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (size_t i = 0; i < count; i++)
         forest->radiosity[g->mesh.leaves[i]] = answer[i];
     forest_average(forest);
-    g->gather->cut = NULL;
-    final_gather_renew(g->gather); /* as a stored solution has them */
     alloc_free(b);
 }
 
@@ -315,7 +314,7 @@ static void end(struct gathering *g)
 {
     struct answer *answer = g->solver->beyond->answer;
     if (g->gather)
-        final_gather_drop_rows(g->gather);
+        final_gather_forget(g->gather);
     final_gather_destroy(answer->gather); /* of a round before */
     answer->gather = g->gather;
     equation_free(&g->equation);

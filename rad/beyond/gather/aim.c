@@ -85,6 +85,7 @@ struct aim {
     const struct senders *senders;
     struct sequence sequence; /* of the node */
     int index;                /* in the sequence, of the next segment */
+    int64_t fired, arrived;   /* segments so far, to all nodes */
     struct volley volley;
 };
 
@@ -122,13 +123,14 @@ static struct shot shot_back(const struct receiver *r, const struct aim *aim,
 
 /* Adds the light of a sender by a shot with this form factor. Returns the light added,
  * over all bands, W/m^2. */
-static double add_shot(struct receiver *r, const struct aim *aim, const struct shot *shot,
+static double add_shot(struct receiver *r, struct aim *aim, const struct shot *shot,
                        int32_t patch, double factor, uint64_t seed)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     const struct forest *forest = r->gather->model->forest;
     int32_t root = (int32_t)forest->patches[patch].id.root;
     double before = rgb_sum(r->light);
+    aim->fired++;
     if (receiver_blocker(r, shot->x, shot->y, root) >= 0)
         return 0.0;
     if (r->gather->aims->panes)
@@ -137,7 +139,9 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
         receiver_see(r, shot->x, shot->y, patch, factor, seed);
     else
         receiver_add_source(r, &ALL, sender_light(aim->senders, patch), factor);
-    return rgb_sum(r->light) - before;
+    double light = rgb_sum(r->light) - before;
+    aim->arrived += light > 0.0;
+    return light;
 }
 
 /* The mean over points of the leaf; of the pane, if this is smaller: then few points of
@@ -301,14 +305,6 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     return sum / segments;
 }
 
-/* True if few segments to a node may all find what others do not: they choose among its
- * senders, or some of it is seen from around. */
-static bool is_by_chance(const struct senders *senders, const struct cut_node *node)
-{
-    return senders->nodes[node->node].child[0] >= 0 || node->asked == 0 ||
-           (node->found > 0.0 && node->found < 1.0);
-}
-
 /* A node whose light is worth a segment or more gets some, and they share its light. The
  * fainter nodes are dealt a whole number of segments together; the one that gets a
  * segment stands for those that get none. Few segments may all miss, which would seem
@@ -316,7 +312,7 @@ static bool is_by_chance(const struct senders *senders, const struct cut_node *n
  * chance with this share. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
-    struct cut cut = cuts_at(cuts, r->row->leaf, &r->gather->view->counts);
+    struct cut cut = cuts_at(cuts, r->row->leaf);
     double each = make_offers(r, cuts, cut, segments);
     const struct offer *offers = r->gather->aims->offers;
     if (!(each > 0.0))
@@ -334,25 +330,30 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         bool sure = worth >= each;
         const struct sender_node *at = &cuts->senders->nodes[node.node];
         bool unseen = at->space != space && !(node.found > 0.0);
-        r->by_chance |=
-            worth > 0.0 && !unseen && (!sure || is_by_chance(cuts->senders, &node));
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;
-        struct volley before = aim.volley, *volley = &aim.volley;
+        struct volley *volley = &aim.volley;
+        struct aim before = aim;
         aim.sequence = sequence_start(hash_mix(r->seed + 8) ^
                                       hash_mix((uint64_t)node.node));
         aim.index = 0;
         aim_at_node(r, &aim, node.node, count, sure ? 1.0 : count * weak.each / worth,
                     offers[i].factor);
         double direct =
-            volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
-        bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
-        double share = node.seen;
+            volley->direct[0] + volley->direct[1] -
+            before.volley.direct[0] - before.volley.direct[1];
+        bool none = aim.arrived == before.arrived;
+        if (r->kind == RECEIVER_LOOK && cuts->tally) {
+            cuts->tally[2 * (cut.first + i)] += aim.fired - before.fired;
+            cuts->tally[2 * (cut.first + i) + 1] += aim.arrived - before.arrived;
+        }
+        double known = (double)(node.asked + 1);
+        double share = node.seen * known / (known + count);
         if (!none && at->space != space)
             r->gather->counts.crossed++;
         if (none && unseen) {
-            *volley = before; /* of another space, as ever: no doubt about own light */
+            *volley = before.volley; /* of another space, as ever: no doubt */
             continue;
         }
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);

@@ -4,22 +4,21 @@
  * its distance and would get no more than one segment, if these were dealt by light.
  *
  * The visible shares decide only how segments are dealt, and how unsure a leaf is after
- * finding nothing; no share stands for light itself. Of a node with k of n segments seen
+ * finding nothing; no share stands for light itself. Of a node that k of n segments reach
  * the share is taken for (k + m) / (n + 1), with the mean share m of all nodes of the
  * cut: so no share is 0, and a node behind a wall with a window counts for less than one
- * behind a leg of a chair. */
+ * behind a leg of a chair. By shares of 0 for nodes without a segment, too, segments
+ * would go where others have gone, looks would be noisy, and leaves be split tenfold.
+ *
+ * Segments are counted by each rank and added up between rounds of looks. */
 #include "rad/beyond/gather/cuts.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
-#include "rad/beyond/sample.h"
-#include "rad/beyond/sequence.h"
 
-/* Leaves of a region, at most; segments to tell how much of a node is seen, at least, and
- * the rays from a leaf for which there is one. */
-enum { REGION_LEAVES = 64, PILOTS = 16 };
+/* Leaves of a region, at most. */
+enum { REGION_LEAVES = 64 };
 
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
@@ -64,7 +63,8 @@ struct regions *regions_create(const struct model *model)
     const struct cluster_tree *tree = model->clusters->tree;
     struct regions *regions = alloc_array(1, sizeof *regions);
     int64_t *before = alloc_array((size_t)tree->root_count + 1, sizeof *before);
-    regions->of = alloc_array((size_t)model->forest->count, sizeof *regions->of);
+    regions->known = model->forest->count;
+    RESERVE(regions->of, &regions->known_capacity, regions->known);
     for (int64_t p = 0; p < model->forest->count; p++)
         regions->of[p] = -1;
     for (int32_t place = 0; place < tree->root_count; place++)
@@ -72,6 +72,14 @@ struct regions *regions_create(const struct model *model)
     name_leaves(regions, model, NODE_TOP, before, -1);
     alloc_free(before);
     return regions;
+}
+
+void regions_follow(struct regions *regions, const struct forest *forest)
+{
+    RESERVE(regions->of, &regions->known_capacity, forest->count);
+    for (; regions->known < forest->count; regions->known++)
+        regions->of[regions->known] =
+            regions->of[forest->patches[regions->known].parent];
 }
 
 void regions_destroy(struct regions *regions)
@@ -86,12 +94,11 @@ void regions_destroy(struct regions *regions)
 /* --- cuts --- */
 
 struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
-                         const struct panes *panes, int segments)
+                         int segments)
 {
     struct cuts *cuts = alloc_array(1, sizeof *cuts);
     cuts->senders = senders;
     cuts->regions = regions;
-    cuts->panes = panes;
     cuts->segments = segments;
     cuts->cuts = alloc_array((size_t)regions->count, sizeof *cuts->cuts);
     for (int64_t i = 0; i < regions->count; i++)
@@ -105,6 +112,7 @@ void cuts_destroy(struct cuts *cuts)
         return;
     alloc_free(cuts->cuts);
     alloc_free(cuts->nodes);
+    alloc_free(cuts->tally);
     alloc_free(cuts);
 }
 
@@ -123,8 +131,8 @@ static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t 
                         int32_t number, double most)
 {
     const struct sender_node *node = &cuts->senders->nodes[number];
-    double worth = sender_node_worth(cuts->senders, node, region) *
-                   cuts_blind_part(cuts->senders, node, space);
+    double light = sender_node_worth(cuts->senders, node, region);
+    double worth = light * cuts_blind_part(cuts->senders, node, space);
     double sum = 0.0;
     if (!(worth > 0.0))
         return 0.0;
@@ -134,7 +142,7 @@ static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t 
     bool small = node->bounds.radius <= SMALL * far && node->space >= 0;
     if (node->child[0] < 0 || (small && worth <= most)) {
         RESERVE(cuts->nodes, &cuts->capacity, cuts->count + 1);
-        cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .upto = worth};
+        cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .worth = light};
         return worth;
     }
     for (int k = 0; k < 4 && node->child[k] >= 0; k++)
@@ -142,77 +150,33 @@ static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t 
     return sum;
 }
 
-/* A point of a surface. */
-struct spot {
-    struct vec3 at, normal;
-    int32_t input; /* triangle */
-};
-
-static struct spot spot_on(const struct forest *forest, int32_t patch, double u, double v)
+/* Finds the shares of the nodes of a region's cut by the segments counted so far. */
+static void find_shares(struct cuts *cuts, int32_t region)
 {
-    struct facet facet = facet_make(forest, patch);
-    return (struct spot){triangle_of_square(&facet.triangle, u, v), facet.plane.normal,
-                         facet.input};
-}
-
-/* A point of a region, evenly distributed; `pick` chooses one of its roots. */
-static struct spot spot_in(const struct model *model, int32_t node, double pick,
-                           const double u[SEQUENCE_DIMENSIONS])
-{
-    if (node_is_cluster(node)) {
-        const struct cluster_tree *tree = model->clusters->tree;
-        const struct cluster *cluster = &tree->clusters[~node];
-        const double *before = tree->area_before;
-        int64_t place = cluster->first +
-                        sum_place(before + cluster->first + 1,
-                                  cluster->end - cluster->first,
-                                  before[cluster->first] + pick * cluster->area);
-        node = tree->roots[place];
+    struct cut cut = cuts->cuts[region];
+    int32_t space = node_space(cuts->senders->model, cuts->regions->nodes[region]);
+    double upto = 0.0, arrived = 0.5, asked = 1.0;
+    for (int64_t i = cut.first; i < cut.first + cut.count; i++) {
+        arrived += (double)cuts->nodes[i].arrived;
+        asked += (double)cuts->nodes[i].asked;
     }
-    return spot_on(model->forest, node, u[0], u[1]);
-}
-
-/* True if a pane aimed at, other than `patch`, is between the spots: that pane brings the
- * light. */
-static bool is_behind_pane(const struct cuts *cuts, const struct spot *from,
-                           const struct spot *to, int32_t patch,
-                           struct octree_counts *counts)
-{
-    struct pane_walk walk = pane_walk_to(point_above(from->at, from->normal),
-                                         point_above(to->at, to->normal));
-    return panes_put_aside(cuts->panes, walk, patch, counts);
-}
-
-/* Asks segments between a region and a node of its cut how many of those whose ends face
- * each other are seen: sets `asked`, and `seen` to a number. */
-static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
-                struct octree_counts *counts)
-{
-    const struct model *model = cuts->senders->model;
-    struct sequence sequence =
-        sequence_start(hash_mix((uint64_t)region) ^ (uint64_t)node->node);
-    double start = hash_unit(sequence.scramble[0]);
-    int pilots = cuts->segments / PILOTS > PILOTS ? cuts->segments / PILOTS : PILOTS;
-    for (int k = 0; k < pilots; k++) {
-        double u[SEQUENCE_DIMENSIONS];
-        sequence_point(&sequence, (uint32_t)k, u);
-        struct choice choice = sender_choose(
-            cuts->senders, &cuts->senders->nodes[node->node], (k + start) / pilots);
-        struct spot from = spot_in(model, cuts->regions->nodes[region],
-                                   hash_unit(sequence.scramble[1] + (uint64_t)k), u);
-        struct spot to = spot_on(model->forest, choice.patch, u[2], u[3]);
-        if (!(point_kernel(from.at, from.normal, to.at, to.normal) > 0.0))
-            continue;
-        int32_t own[2] = {from.input, to.input}, guess = -1;
-        node->asked++;
-        node->seen += !octree_blocks_segment(model->octree, from.at, to.at, own, &guess,
-                                             counts) &&
-                      !(cuts->panes && is_behind_pane(cuts, &from, &to, choice.patch,
-                                                      counts));
+    for (int64_t i = cut.first; i < cut.first + cut.count; i++) {
+        struct cut_node *node = &cuts->nodes[i];
+        const struct sender_node *at = &cuts->senders->nodes[node->node];
+        double blind = cuts_blind_part(cuts->senders, at, space);
+        node->seen =
+            ((double)node->arrived + arrived / asked) / (double)(node->asked + 1);
+        if (node->asked > 0)
+            node->found = (double)node->arrived / (double)node->asked;
+        else
+            node->found = blind < 1.0 ? 0.0 : node->seen;
+        double light = node->arrived > 0 ? node->worth : blind * node->worth;
+        upto += light * sqrt(node->seen);
+        node->upto = upto;
     }
 }
 
-static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *counts)
+static void make_cut(struct cuts *cuts, int32_t region)
 {
     const struct model *model = cuts->senders->model;
     struct bounds bounds = bounds_of(model, cuts->regions->nodes[region]);
@@ -225,31 +189,35 @@ static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *co
         most = add_nodes(cuts, &bounds, space, 0, most) / cuts->segments;
     }
     cut->count = cuts->count - cut->first;
-    double upto = 0.0, seen = 0.5, asked = 1.0;
-    for (int64_t i = cut->first; i < cuts->count; i++) {
-        ask(cuts, region, &cuts->nodes[i], counts);
-        seen += cuts->nodes[i].seen;
-        asked += cuts->nodes[i].asked;
-    }
-    for (int64_t i = cut->first; i < cuts->count; i++) {
-        struct cut_node *node = &cuts->nodes[i];
-        node->found = node->asked > 0 ? node->seen / node->asked : 0.0;
-        node->seen = (node->seen + seen / asked) / (node->asked + 1);
-        if (node->found > 0.0)
-            node->upto /= cuts_blind_part(
-                cuts->senders, &cuts->senders->nodes[node->node], space);
-        upto += node->upto * sqrt(node->seen);
-        node->upto = upto;
-    }
+    find_shares(cuts, region);
 }
 
-struct cut cuts_at(struct cuts *cuts, int32_t leaf, struct octree_counts *counts)
+void cuts_count(struct cuts *cuts)
+{
+    for (int32_t region = 0; region < cuts->regions->count; region++)
+        if (cuts->cuts[region].first < 0)
+            make_cut(cuts, region);
+    cuts->tally = alloc_array(2 * (size_t)cuts->count, sizeof *cuts->tally);
+}
+
+void cuts_learn(struct cuts *cuts)
+{
+    for (int64_t i = 0; i < cuts->count; i++) {
+        cuts->nodes[i].asked += cuts->tally[2 * i];
+        cuts->nodes[i].arrived += cuts->tally[2 * i + 1];
+        cuts->tally[2 * i] = cuts->tally[2 * i + 1] = 0;
+    }
+    for (int32_t region = 0; region < cuts->regions->count; region++)
+        find_shares(cuts, region);
+}
+
+struct cut cuts_at(struct cuts *cuts, int32_t leaf)
 {
     int32_t region = cuts->regions->of[leaf];
     if (region < 0)
         return (struct cut){0, 0};
     if (cuts->cuts[region].first < 0)
-        make_cut(cuts, region, counts);
+        make_cut(cuts, region);
     return cuts->cuts[region];
 }
 

@@ -85,17 +85,12 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     struct final_gather *gather = alloc_array(1, sizeof *gather);
     gather->model = model;
     gather->cut = cut;
+    gather->rays_asked = rays;
     gather->rays = rays_for(rays, forest_count(forest).leaves);
     gather->lit = lit;
-    gather->order = forest_order(forest);
-    gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
-    for (int64_t i = 0; i < forest->count; i++)
-        gather->place[gather->order[i]] = (int32_t)i;
     gather->view = alloc_array(1, sizeof *gather->view);
     gather->view->root = -1;
     gather->view->overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather->near = nears_create(model, lit);
-    gather->sums = sums_create(model, lit);
     gather->aims = alloc_array(1, sizeof *gather->aims);
     gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
     gather->aims->lamps = lamps_create(model, lit);
@@ -104,7 +99,7 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     return gather;
 }
 
-void final_gather_drop_rows(struct final_gather *gather)
+static void drop_rows(struct final_gather *gather)
 {
     alloc_free(gather->rows);
     alloc_free(gather->terms);
@@ -114,6 +109,23 @@ void final_gather_drop_rows(struct final_gather *gather)
     gather->near->items = NULL;
     gather->count = gather->row_capacity = 0;
     gather->term_capacity = 0;
+}
+
+/* Drops rows and what is kept for each patch of the forest as it was. */
+static void drop_patches(struct final_gather *gather)
+{
+    if (!gather->order)
+        return;
+    drop_rows(gather);
+    alloc_free(gather->near->paths);
+    alloc_free(gather->near->leaves);
+    alloc_free(gather->near);
+    alloc_free(gather->sums->items);
+    alloc_free(gather->sums->latest);
+    alloc_free(gather->sums->ranges);
+    alloc_free(gather->sums);
+    alloc_free(gather->order);
+    alloc_free(gather->place);
 }
 
 static void aims_destroy(struct gather_aims *aims)
@@ -136,20 +148,11 @@ void final_gather_destroy(struct final_gather *gather)
 {
     if (!gather)
         return;
-    final_gather_drop_rows(gather);
+    drop_patches(gather);
     aims_destroy(gather->aims);
     alloc_free(gather->view->faced);
     alloc_free(gather->view->overlapped);
     alloc_free(gather->view);
-    alloc_free(gather->near->paths);
-    alloc_free(gather->near->leaves);
-    alloc_free(gather->near);
-    alloc_free(gather->sums->items);
-    alloc_free(gather->sums->latest);
-    alloc_free(gather->sums->ranges);
-    alloc_free(gather->sums);
-    alloc_free(gather->order);
-    alloc_free(gather->place);
     alloc_free(gather->lit);
     alloc_free(gather);
 }
@@ -184,25 +187,29 @@ void final_gather_renew(struct final_gather *gather)
     const struct model *model = gather->model;
     const struct forest *forest = model->forest;
     struct gather_aims *aims = gather->aims;
+    drop_patches(gather);
+    gather->order = forest_order(forest);
+    gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
+    for (int64_t i = 0; i < forest->count; i++)
+        gather->place[gather->order[i]] = (int32_t)i;
+    gather->near = nears_create(model, gather->lit);
+    gather->sums = sums_create(model, gather->lit);
+    if (!aims->regions) {
+        aims->regions = regions_create(model);
+        aims->lamp_cuts = cuts_create(aims->lamps, aims->regions, gather->rays);
+    }
+    regions_follow(aims->regions, forest);
     find_bright(aims, model, gather->lit);
     if (aims->panes) {
         senders_destroy(aims->windows);
         panes_look(aims->panes, model->octree, forest);
         aims->windows = senders_of_panes(model, aims->panes->sent);
     }
-    regions_destroy(aims->regions);
-    cuts_destroy(aims->lamp_cuts);
     cuts_destroy(aims->bright_cuts);
     cuts_destroy(aims->window_cuts);
-    aims->regions = regions_create(model);
-    aims->lamp_cuts =
-        cuts_create(aims->lamps, aims->regions, aims->panes, gather->rays);
-    aims->bright_cuts =
-        cuts_create(aims->bright, aims->regions, aims->panes, gather->rays);
+    aims->bright_cuts = cuts_create(aims->bright, aims->regions, gather->rays);
     if (aims->panes)
-        aims->window_cuts =
-            cuts_create(aims->windows, aims->regions, aims->panes, gather->rays);
-    alloc_free(gather->near->leaves);
+        aims->window_cuts = cuts_create(aims->windows, aims->regions, gather->rays);
     struct gather_leaf *leaves = alloc_array((size_t)forest->count, sizeof *leaves);
     gather->near->leaves = leaves;
     for (int32_t p = 0; p < forest->count; p++) {
@@ -212,6 +219,20 @@ void final_gather_renew(struct final_gather *gather)
         leaves[p] = (struct gather_leaf){triangle_centroid(&t), reach2,
                                          slope_of(forest, gather->cut, p, NULL)};
     }
+}
+
+void final_gather_forget(struct final_gather *gather)
+{
+    struct gather_aims *aims = gather->aims;
+    regions_destroy(aims->regions);
+    cuts_destroy(aims->lamp_cuts);
+    aims->regions = NULL;
+    aims->lamp_cuts = NULL;
+    gather->cut = NULL;
+    gather->rays =
+        rays_for(gather->rays_asked, forest_count(gather->model->forest).leaves);
+    final_gather_renew(gather);
+    drop_rows(gather);
 }
 
 int64_t final_gather_work(const struct final_gather *gather)

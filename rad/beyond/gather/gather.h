@@ -11,6 +11,7 @@
 #include "rad/beyond/gather/cuts.h"
 #include "rad/beyond/gather/lit.h"
 #include "rad/beyond/gather/slope.h"
+#include "rad/beyond/panes.h"
 
 /* A term of the row at hand, while it is summed. */
 struct gather_sum {
@@ -114,6 +115,7 @@ struct gather_aims {
 /* The scene of a final gather, and the rows of this rank: rad/beyond/gather/rows.h. */
 struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
+    int rays_asked;      /* from a leaf, in the mean, if there are few leaves */
     int rays;            /* from a leaf, in the mean */
     struct lit *lit;     /* [lit_count()] */
     const uint8_t *cut;  /* borrowed, [forest->count] 1: a thing stands on the patch or
@@ -150,8 +152,12 @@ struct final_gather *final_gather_create(struct model *model, int rays,
 void final_gather_destroy(struct final_gather *gather); /* NULL: none */
 
 /* Finds the bright patches anew, and the patches as met by rays, by the radiosities of
- * the forest and its leaves. To be called when these have changed. */
+ * the forest and its leaves. To be called when these have changed. Drops all rows. */
 void final_gather_renew(struct final_gather *gather);
+
+/* The same, and forgets all rows, leaves too near, and what looks have told, also when
+ * lamps have changed: the gather is as a stored solution has it. */
+void final_gather_forget(struct final_gather *gather);
 
 /* The work of this rank so far, proofs included, in tests. */
 int64_t final_gather_work(const struct final_gather *gather);
@@ -159,7 +165,5 @@ int64_t final_gather_work(const struct final_gather *gather);
 /* The integer of a value in units, bounded. */
 int64_t gather_units(double value, double unit);
 
-/* Forgets all rows, and leaves too near. */
-void final_gather_drop_rows(struct final_gather *gather);
 
 #endif

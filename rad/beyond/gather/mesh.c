@@ -430,6 +430,7 @@ void meshing_end(struct meshing *m)
     share_rays(m);
     mesh->work = meshing_work(m, mesh->leaves, mesh->count, mesh);
     mesh->traced = m->gather->counts.rays + m->gather->counts.segments;
+    m->gather->counts = (struct gather_counts){0};
     alloc_free(m->known);
     alloc_free(m->sums);
 }
@@ -442,5 +443,6 @@ void gather_mesh_free(struct gather_mesh *mesh)
     alloc_free(mesh->exact);
     alloc_free(mesh->work);
     alloc_free(mesh->cut);
+    final_gather_destroy(mesh->gather);
     *mesh = (struct gather_mesh){0};
 }

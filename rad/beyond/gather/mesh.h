@@ -16,6 +16,7 @@ struct gather_mesh {
     int64_t cut_capacity;
     int64_t split;   /* leaves split */
     bool limited;    /* the memory limit has kept others from being split */
+    struct final_gather *gather; /* of looks; rows go on with it */
     int64_t traced;  /* rays and segments of looks on this rank */
 };
 

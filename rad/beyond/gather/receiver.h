@@ -33,8 +33,6 @@ struct receiver {
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
     int segments;         /* to be fired at lamps, about */
-    bool by_chance;       /* few segments may agree by chance: senders are chosen, or
-                             seen in part from its region */
     int escaped;          /* rays and paths out of the scene, or ended on a back */
     int32_t near;         /* place of the leaf too near met first by the ray at hand; -1:
                              none */

@@ -88,6 +88,5 @@ struct gather_light final_gather_at(struct final_gather *gather,
     }
     light.straight = row.straight;
     light.rest = sums.h;
-    light.by_chance = r.by_chance;
     return light;
 }

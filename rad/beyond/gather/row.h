@@ -12,7 +12,6 @@ struct gather_light {
                             (W/m^2)^2 */
     struct rgb halves;   /* a sample of the variance by the sequence: see struct
                             gather_row */
-    bool by_chance;   /* few segments may agree by chance */
 };
 
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`

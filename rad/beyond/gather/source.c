@@ -40,7 +40,7 @@ bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x
     const struct forest *forest = g->model->forest;
     const struct scene *scene = g->model->scene;
     int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
-    struct cut cut = cuts_at(cuts, patch, &g->view->counts);
+    struct cut cut = cuts_at(cuts, patch);
     struct choice sender = cuts_choose(cuts, cut, hash_unit(seed));
     if (sender.patch < 0)
         return false;

@@ -57,8 +57,7 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
     *exact = factor_of_floor(g.s.scene, 32 + 2 * lamps * lamps);
-    struct octree_counts counts = {0};
-    *groups = cuts_at(g.gather->aims->lamp_cuts, g.gather->rows[0].leaf, &counts).count;
+    *groups = cuts_at(g.gather->aims->lamp_cuts, g.gather->rows[0].leaf).count;
     double mean = mean_of_roots(&g, 0, 32);
     trial_free(&g);
     return mean;
@@ -258,9 +257,8 @@ static void test_choice(void)
         exact += point_triangle_factor(x, up, &t);
     }
     enum { CHOICES = 1 << 16 };
-    struct octree_counts counts = {0};
     struct cuts *cuts = g.gather->aims->lamp_cuts;
-    struct cut cut = cuts_at(cuts, g.gather->rows[0].leaf, &counts);
+    struct cut cut = cuts_at(cuts, g.gather->rows[0].leaf);
     for (int k = 0; k < CHOICES; k++) {
         struct choice lamp = cuts_choose(cuts, cut, (k + 0.5) / CHOICES);
         struct triangle t = scene_root_triangle(scene, lamp.patch);
@@ -387,7 +385,7 @@ static void test_sky_behind_window(void)
     double exact = point_polygon_factor(floor, z, window, 4), sum = 0.0, square = 0.0;
     double claimed = HUGE_VAL;
     double first = sum_of_runs(&g, &points, SEGMENTS);
-    final_gather_renew(g.gather);
+    final_gather_forget(g.gather);
     sum_of_runs(&g, &points, 4 * SEGMENTS);
     tap_ok(first == sum_of_runs(&g, &points, SEGMENTS),
            "the lamps that a leaf sees are the same whoever asks first");
@@ -405,6 +403,71 @@ static void test_sky_behind_window(void)
     trial_free(&g);
 }
 
+/* Segments counted at the nodes of the lamp of roots `first` and the next. */
+struct counted {
+    double asked, arrived, found;
+};
+
+static struct counted count_lamp(const struct cuts *cuts, struct cut cut, int32_t first)
+{
+    struct counted counted = {0.0, 0.0, 0.0};
+    for (int64_t i = cut.first; i < cut.first + cut.count; i++) {
+        const struct cut_node *node = &cuts->nodes[i];
+        int32_t lamp = cuts->senders->patches[cuts->senders->nodes[node->node].first];
+        if (lamp / 2 != first / 2)
+            continue;
+        counted.asked += (double)node->asked;
+        counted.arrived += (double)node->arrived;
+        counted.found = node->found;
+    }
+    return counted;
+}
+
+/* Looks at a floor below four lamps: one is seen, one hidden, one half hidden (within
+ * .05, by the edge of its screen and by chance); of the last the segments are not told,
+ * so its share is the mean of all. Before anything is learnt shares are a half. */
+static void test_shares(void)
+{
+    enum { RAYS = 64 };
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    for (int k = 0; k < 4; k++)
+        soup_add_quad(&soup, point(k % 2 ? 0.8 : 0.1, k / 2 ? 0.8 : 0.1, 1),
+                      point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.79, 0.09, 0.998), point(0.91, 0.21, 0.999), 1, false);
+    soup_add_box(&soup, point(0.09, 0.79, 0.998), point(0.15, 0.91, 0.999), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", RAYS);
+    struct cuts *cuts = g.gather->aims->lamp_cuts;
+    cuts_count(cuts);
+    struct cut cut = cuts_at(cuts, 0);
+    double before = count_lamp(cuts, cut, 2).found;
+    for (int32_t leaf = 0; leaf < 2; leaf++)
+        final_gather_look(g.gather, leaf, RAYS);
+    for (int64_t i = cut.first; i < cut.first + cut.count; i++)
+        if (cuts->senders->patches[cuts->senders->nodes[cuts->nodes[i].node].first] >= 8)
+            cuts->tally[2 * i] = cuts->tally[2 * i + 1] = 0;
+    cuts_learn(cuts);
+    struct counted seen = count_lamp(cuts, cut, 2), hidden = count_lamp(cuts, cut, 4);
+    struct counted half = count_lamp(cuts, cut, 6), none = count_lamp(cuts, cut, 8);
+    double part = half.arrived / half.asked;
+    double mean = (seen.arrived + hidden.arrived + half.arrived + 0.5) /
+                  (seen.asked + hidden.asked + half.asked + 1.0);
+    tap_ok(before == 0.5 && cuts_at(cuts, 1).first == cut.first &&
+               seen.asked + hidden.asked + half.asked > 4 * RAYS,
+           "shares begin with %g; %g, %g and %g segments of looks at two leaves", before,
+           seen.asked, hidden.asked, half.asked);
+    tap_ok(seen.arrived == seen.asked && hidden.arrived == 0.0 && fabs(part - 0.5) < 0.05,
+           "seen: %g arrive, hidden: %g, half hidden: a part of %.3f", seen.arrived,
+           hidden.arrived, part);
+    tap_ok(none.asked == 0.0 && fabs(none.found - mean) < 0.05,
+           "a lamp without a segment has the share %.3f, the mean is %.3f", none.found,
+           mean);
+    trial_free(&g);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -414,6 +477,7 @@ int main(int argc, char **argv)
     test_bright_beside();
     test_holder();
     test_choice();
+    test_shares();
     test_bright_part(point(0.4, 0.6, 0.9), 0.004, "--max-level 6");
     test_bright_part(point(0.4, 0.6, 0.97), 0.004, "--max-level 7");
     test_bright_part(point(0.01, 0, 0.98), 1.0, "--max-level 7");
