@@ -30,7 +30,7 @@ static struct shading *shade_rest(const struct solution *s)
 {
     const struct answer *answer = s->solver->beyond->answer;
     return shading_create(s->solver->model.forest, s->octree, answer->straight,
-                          answer->error, answer->outside);
+                          answer->error, answer->open);
 }
 
 /* --- straight from a lamp --- */

@@ -57,7 +57,7 @@ static struct result run(const struct comm *comm, const char *path,
         struct answer *answer = s.solver->beyond->answer;
         struct shading *shading =
             shading_create(forest, s.octree, answer->straight, answer->error,
-                           answer->outside);
+                           answer->open);
         struct renderer renderer =
             renderer_make(s.octree, shading, answer->straight ? answer->gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;

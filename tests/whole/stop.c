@@ -123,7 +123,7 @@ static int64_t print_table(void)
     int64_t bytes;
     struct viewfactors *factors = viewfactors_create(world.scene, world.octree, 1e-3, 4);
     FILE *file = tmpfile();
-    table_print(factors, file);
+    table_print(factors, false, file);
     bytes = ftell(file);
     fclose(file);
     viewfactors_destroy(factors);
