@@ -33,13 +33,18 @@ static void add_of_all(void *context, int64_t *numbers, int64_t count)
     comm_add(solver->comm, numbers, count);
 }
 
+struct totals totals_of(struct solver *solver, int64_t terms)
+{
+    return (struct totals){largest_of_all, add_of_all, solver, terms};
+}
+
 /* Measures row sums as the irradiances of B = 1. */
 void descent_begin(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
     solver_carry_ones(solver);
     conjugate_begin(solver->beyond->descent, forest, solver->homes.own, solver->flux,
-                    (struct totals){largest_of_all, add_of_all, solver, forest->count});
+                    totals_of(solver, forest->count));
 }
 
 /* The remaining error, relative to all light, at which iteration over the links ends. */

@@ -3,6 +3,10 @@
 #define MPI_BEYOND_DESCENT_H
 
 #include "mpi/solver.h"
+#include "rad/beyond/total.h"
+
+/* How the ranks of a solver agree on sums of so many terms. */
+struct totals totals_of(struct solver *solver, int64_t terms);
 
 /* When links have changed; and after each iteration. */
 void descent_begin(struct solver *solver);

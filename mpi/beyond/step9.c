@@ -2,19 +2,20 @@
  *
  * 1. The mesh: leaves are looked at and split (mpi/beyond/mesh.c).
  * 2. Rows: dealt to ranks, which keep what they make (mpi/beyond/stages.c).
- * 3. The equation of rows is solved, in turns (rad/beyond/gather/equation.h): all ranks
- *    know all vectors, so only a product with the rows takes an exchange, and scalar
- *    products are the same on all ranks.
- * 4. The claim: how wrong each leaf may be (rad/beyond/gather/claim.h). */
+ * 3. The equation of rows is solved, in turns (rad/beyond/gather/equation.h): a rank has
+ *    the values of its rows' leaves. For each product with the rows all ranks learn what
+ *    rows see of all leaves.
+ * 4. The claim: how wrong each leaf may be (rad/beyond/gather/claim.h).
+ * 5. All ranks learn the answer, which pictures are made of. */
 #include "mpi/beyond/step9.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "mpi/beyond/beyond.h"
+#include "mpi/beyond/descent.h"
 #include "mpi/beyond/mesh.h"
 #include "mpi/beyond/stages.h"
 #include "rad/beyond/bicgstab.h"
@@ -39,11 +40,23 @@ struct gathering {
     struct equation equation;
     struct light_balance balance;
     struct stages stages; /* who has which rows */
-    struct rgb *all;      /* [leaves] buffer: a value of each row, rank by rank */
+    int32_t *leaf;        /* [leaves] number of each, rank by rank in the order of rows */
+    int32_t *place;       /* [leaves] its place in equation.radiosity */
+    struct rgb *all;      /* [leaves] buffer: a value of each, in this order */
     int64_t bytes;        /* of values exchanged by ranks so far */
 };
 
 /* --- exchange --- */
+
+/* Lists the leaves, rank by rank. */
+static void list_leaves(struct gathering *g)
+{
+    for (int64_t i = 0; i < g->mesh.count; i++) {
+        int32_t k = g->stages.place[i];
+        g->leaf[k] = (int32_t)i;
+        g->place[k] = g->gather->place[g->mesh.leaves[i]];
+    }
+}
 
 /* The values of this rank's rows, in g->all. */
 static struct rgb *own_values(const struct gathering *g)
@@ -51,25 +64,18 @@ static struct rgb *own_values(const struct gathering *g)
     return g->all + g->stages.at[g->solver->comm->rank];
 }
 
-/* Collective. Brings the value of each row, from g->all, to all ranks, by leaf number:
- * [leaves]. Rows lie where made, and all ranks know all vectors: this is the only
- * exchange of a product with the rows. */
-static void share_values(struct gathering *g, struct rgb *values)
+/* Collective. Brings the values of each rank's rows, in g->all, to all ranks. */
+static void share_values(struct gathering *g)
 {
     comm_share(g->solver->comm, g->all, g->stages.counts, g->stages.at, sizeof *g->all);
-    g->bytes += g->equation.count * (int64_t)sizeof *g->all;
-    for (int64_t i = 0; i < g->equation.count; i++)
-        values[i] = g->all[g->stages.place[i]];
+    g->bytes += g->mesh.count * (int64_t)sizeof *g->all;
 }
 
-/* Collective. Brings a field of each row, `offset` bytes from its beginning, to all
- * ranks: at most an rgb. */
-static void share_field(struct gathering *g, size_t offset, size_t bytes,
-                        struct rgb *values)
+/* Collective. What rows see of all leaves, from g->all, and of inner patches. */
+static void show(struct gathering *g)
 {
-    for (int64_t row = 0; row < g->gather->count; row++)
-        memcpy(&own_values(g)[row], (const char *)&g->gather->rows[row] + offset, bytes);
-    share_values(g, values);
+    share_values(g);
+    equation_set(&g->equation, g->place, g->all);
 }
 
 /* Collective. Adds up integers of all ranks, which go to the sum and back. */
@@ -81,24 +87,22 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
 
 /* --- rows --- */
 
-/* Collective. All ranks learn what the rows have met: leaves too near, covers, and which
- * spaces are closed. */
+/* Collective. All ranks learn what the rows have met: leaves too near, visible shares,
+ * and which spaces are closed. */
 static void share_met(struct gathering *g)
 {
     enum { EACH = (int)(sizeof *g->gather->near->items / sizeof(int64_t)) };
     struct equation *e = &g->equation;
     int64_t patches = g->solver->model.forest->count, crossed = g->gather->counts.crossed;
-    struct rgb *covers = alloc_array((size_t)e->count, sizeof *covers);
     comm_add(g->solver->comm, e->fired, 2 * lit_count(&g->solver->model));
     comm_add(g->solver->comm, &crossed, 1);
     add_up(g, &g->gather->near->items->area, EACH * patches);
     equation_number_near(e);
-    share_field(g, offsetof(struct gather_row, cover), sizeof *e->covers, covers);
     for (int64_t i = 0; i < e->count; i++)
-        memcpy(&e->covers[i], &covers[i], sizeof *e->covers);
-    equation_find_outside(e);
+        own_values(g)[i].band[0] = (double)e->covers[i].outside;
+    share_values(g);
+    equation_find_outside(e, g->place, g->all);
     g->balance = balance_start(e, crossed);
-    alloc_free(covers);
 }
 
 /* Collective. False if a signal on any rank has ended the work. */
@@ -110,13 +114,17 @@ static bool make_rows(struct gathering *g)
     mesh->gather = NULL;
     g->gather->cut = mesh->cut;
     final_gather_renew(g->gather);
-    g->equation = equation_start(g->gather, mesh);
+    g->equation =
+        equation_start(g->gather, mesh, totals_of(solver, BANDS * mesh->count));
+    g->leaf = alloc_array((size_t)mesh->count, sizeof *g->leaf);
+    g->place = alloc_array((size_t)mesh->count, sizeof *g->place);
     g->all = alloc_array((size_t)mesh->count, sizeof *g->all);
     progress_begin(solver->progress, "gathering", -1, 0);
     g->stages = (struct stages){.solver = solver, .gather = g->gather,
                                 .act = equation_make_row, .context = &g->equation,
                                 .work = mesh->work, .count = mesh->count};
     stages_run(&g->stages);
+    list_leaves(g);
     const struct gather_counts *counts = &g->gather->counts;
     int64_t sums[] = {stop_is_asked(), counts->rays, counts->segments, counts->exact,
                       final_gather_terms(g->gather), mesh->traced};
@@ -130,16 +138,16 @@ static bool make_rows(struct gathering *g)
 
 /* --- light --- */
 
-/* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`; with the
+/* Collective. Irradiances of own leaves, W/m^2, for their radiosities `b`; with the
  * source and what lamps lack if `lamps`; in a closed scene as much as leaves. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
-    equation_show(&g->equation, b, lamps);
+    equation_show(&g->equation, b, lamps, own_values(g));
+    show(g);
     account_begin(&g->solver->account, PHASE_PRODUCTS);
-    equation_multiply(&g->equation, lamps, own_values(g));
+    equation_multiply(&g->equation, lamps, h);
     account_end(&g->solver->account, PHASE_PRODUCTS);
-    share_values(g, h);
     if (g->balance.any)
         balance_close(&g->balance, b, lamps, h);
 }
@@ -149,7 +157,8 @@ static void find_shown(struct gathering *g, const struct rgb *b)
 {
     size_t count = BANDS * (size_t)g->equation.near_count;
     int64_t *watts = alloc_array(count, sizeof *watts);
-    equation_show_means(&g->equation, b);
+    equation_show_means(&g->equation, b, own_values(g));
+    show(g);
     account_begin(&g->solver->account, PHASE_PRODUCTS);
     equation_add_near(&g->equation, watts);
     account_end(&g->solver->account, PHASE_PRODUCTS);
@@ -183,7 +192,8 @@ static struct bicgstab take_turn(struct gathering *g, const double *weights,
     equation_reflect(e, h, r);
     for (int64_t i = 0; i < e->count; i++) /* what b leaves, E + rho H - b */
         r[i] = rgb_sub(r[i], b[i]);
-    struct bicgstab done = bicgstab_solve(reflect, g, weights, e->count, end, b, r);
+    struct bicgstab done =
+        bicgstab_solve(reflect, g, &e->totals, weights, e->count, end, b, r);
     if (done.steps > 0)
         irradiances(g, b, true, h);
     for (int64_t i = 0; i < e->count; i++) /* slopes may go below 0 where B has changed */
@@ -202,7 +212,7 @@ static double solve(struct gathering *g, struct rgb *b, struct rgb *h, struct rg
 {
     const struct model *model = &g->solver->model;
     for (int64_t i = 0; i < g->equation.count; i++)
-        answer[i] = b[i] = model->forest->radiosity[g->mesh.leaves[i]];
+        answer[i] = b[i] = model->forest->radiosity[g->equation.patch[i]];
     struct bicgstab_end end = {
         .residual = 0.5 * model->criterion.tolerance * model->absorptance /
                     lit_count(model), /* of the sum over spaces */
@@ -224,7 +234,7 @@ static double solve(struct gathering *g, struct rgb *b, struct rgb *h, struct rg
 
 /* --- the answer --- */
 
-/* Updates the vote for the gathered light. */
+/* Collective. Updates the vote for the gathered light. */
 static void judge(const struct gathering *g, const struct rgb *h, const struct rgb *b,
                   double residual, struct vote *vote)
 {
@@ -247,65 +257,95 @@ static void find_unsure(struct gathering *g, const struct rgb *h, const struct r
     balance_find_unsure(&g->balance, h, reflected, again);
 }
 
-/* Collective. Claims the errors of leaves with the radiosities `b`. `change`: buffer. */
-static void claim(struct gathering *g, const struct rgb *b, double remaining,
-                  struct rgb *change)
+/* Collective. Raises the variances of own leaves, in g->all, to their sisters'. `by`: of
+ * each leaf of the mesh, rays or segments. `all`: buffer. */
+static void raise_variances(struct gathering *g, const int *by, struct rgb *all)
 {
-    struct answer *answer = g->solver->beyond->answer;
-    const struct forest *forest = g->solver->model.forest;
-    const size_t count = (size_t)g->equation.count, bytes = sizeof *b;
-    struct rgb *mesh = alloc_array(4 * count, bytes), *rays = mesh + count;
-    struct rgb *halves = rays + count, *segments = halves + count;
-    equation_set(&g->equation, b);
-    claim_by_mesh(&g->equation, own_values(g));
-    share_values(g, mesh);
-    claim_find_changes(&g->equation, own_values(g));
-    share_values(g, change);
-    share_field(g, offsetof(struct gather_row, chance), bytes, rays);
-    share_field(g, offsetof(struct gather_row, halves), bytes, halves);
-    share_field(g, offsetof(struct gather_row, of_segments), bytes, segments);
-    claim_by_rays(&g->equation, halves, change, segments, rays);
-    alloc_free(answer->error);
-    answer->error = alloc_array((size_t)forest->count, sizeof *answer->error);
-    claim_errors(&g->balance, remaining, mesh, rays, answer->error, &answer->counts);
+    share_values(g);
+    for (int64_t k = 0; k < g->mesh.count; k++)
+        all[g->leaf[k]] = g->all[k];
+    claim_raise_to_sisters(g->solver->model.forest, g->mesh.leaves, g->mesh.count, by,
+                           all);
+}
+
+/* Collective. Claims the errors of leaves with the radiosities `b`. */
+static void claim(struct gathering *g, const struct rgb *b, double remaining,
+                  double *errors)
+{
+    struct equation *e = &g->equation;
+    const size_t count = (size_t)e->count, bytes = sizeof *b;
+    struct rgb *mesh = alloc_array(3 * count, bytes), *rays = mesh + count;
+    struct rgb *segments = rays + count;
+    struct rgb *all = alloc_array((size_t)g->mesh.count, bytes);
+    memcpy(own_values(g), b, count * bytes);
+    show(g);
+    claim_by_mesh(e, mesh);
+    claim_find_noise(e, own_values(g), segments);
+    raise_variances(g, g->mesh.rays, all);
+    for (size_t i = 0; i < count; i++)
+        rays[i] = all[e->number[i]];
+    memcpy(own_values(g), segments, count * bytes);
+    raise_variances(g, g->mesh.segments, all);
+    for (size_t i = 0; i < count; i++)
+        rgb_add(&rays[i], 1.0, all[e->number[i]]);
+    claim_by_rays(e, rays);
+    claim_errors(&g->balance, remaining, mesh, rays, errors,
+                 &g->solver->beyond->answer->counts);
+    alloc_free(all);
     alloc_free(mesh);
 }
 
-/* Collective. The answer for pictures: light straight from lamps, and open shares. */
-static void share_answer(struct gathering *g, struct rgb *light)
+/* Collective. All ranks learn the answer: radiosities `b`, their errors, light straight
+ * from lamps, and open shares. */
+static void share_answer(struct gathering *g, const struct rgb *b, const double *errors)
 {
     struct answer *answer = g->solver->beyond->answer;
-    size_t patches = (size_t)g->solver->model.forest->count;
-    share_field(g, offsetof(struct gather_row, straight), sizeof *light, light);
+    struct forest *forest = g->solver->model.forest;
+    const struct equation *e = &g->equation;
+    size_t patches = (size_t)forest->count, count = (size_t)e->count;
+    alloc_free(answer->error);
     alloc_free(answer->straight);
     alloc_free(answer->open);
+    answer->error = alloc_array(patches, sizeof *answer->error);
     answer->straight = alloc_array(patches, sizeof *answer->straight);
     answer->open = alloc_array(patches, sizeof *answer->open);
-    for (int64_t i = 0; i < g->equation.count; i++) {
-        struct rgb rho = equation_material(&g->equation, i)->reflectance;
+    memcpy(own_values(g), b, count * sizeof *b);
+    share_values(g);
+    for (int64_t k = 0; k < g->mesh.count; k++)
+        forest->radiosity[g->mesh.leaves[g->leaf[k]]] = g->all[k];
+    for (size_t i = 0; i < count; i++)
         for (int c = 0; c < BANDS; c++)
-            answer->straight[g->mesh.leaves[i]].band[c] = rho.band[c] * light[i].band[c];
-        answer->open[g->mesh.leaves[i]] = g->equation.covers[i].open;
+            own_values(g)[i].band[c] =
+                equation_material(e, (int64_t)i)->reflectance.band[c] *
+                g->gather->rows[i].straight.band[c];
+    share_values(g);
+    for (int64_t k = 0; k < g->mesh.count; k++)
+        answer->straight[g->mesh.leaves[g->leaf[k]]] = g->all[k];
+    for (size_t i = 0; i < count; i++)
+        own_values(g)[i] = (struct rgb){{errors[i], (double)e->covers[i].open, 0.0}};
+    share_values(g);
+    for (int64_t k = 0; k < g->mesh.count; k++) {
+        answer->error[g->mesh.leaves[g->leaf[k]]] = (float)g->all[k].band[0];
+        answer->open[g->mesh.leaves[g->leaf[k]]] = (float)g->all[k].band[1];
     }
+    forest_average(forest);
 }
 
 /* Collective. Solves for light by the rows. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
-    struct forest *forest = g->solver->model.forest;
     size_t count = (size_t)g->equation.count;
     struct rgb *b = alloc_array(4 * count, sizeof *b);
+    double *errors = alloc_array(count, sizeof *errors);
     struct rgb *h = b + count, *r = h + count, *answer = r + count;
     share_met(g);
     double residual = solve(g, b, h, r, answer);
     g->solver->beyond->answer->counts.closing = balance_missing(&g->balance);
     judge(g, h, answer, residual, vote);
     find_unsure(g, h, answer, b, r);
-    claim(g, answer, vote->remaining, r);
-    share_answer(g, h);
-    for (size_t i = 0; i < count; i++)
-        forest->radiosity[g->mesh.leaves[i]] = answer[i];
-    forest_average(forest);
+    claim(g, answer, vote->remaining, errors);
+    share_answer(g, answer, errors);
+    alloc_free(errors);
     alloc_free(b);
 }
 
@@ -321,6 +361,8 @@ static void end(struct gathering *g)
     balance_free(&g->balance);
     gather_mesh_free(&g->mesh);
     stages_free(&g->stages);
+    alloc_free(g->leaf);
+    alloc_free(g->place);
     alloc_free(g->all);
 }
 

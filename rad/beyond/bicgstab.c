@@ -4,6 +4,7 @@
  *     t = A s     r' = s - o t,  o = (t, s) / (t, t)     x += a p + o s
  *     p' = r' + (r0, r') / (r0, r) (a / o) (p - o v).
  *
+ * Scalar products are sums in fixed point, the same however ranks have the unknowns.
  * A solved band, or one with a denominator of 0, stands still; if all do so with a
  * residual left, the method begins afresh from there. */
 #include "rad/beyond/bicgstab.h"
@@ -16,28 +17,57 @@
 
 struct vectors {
     struct rgb *r, *r0, *p, *v, *t;
+    const struct totals *totals;
     const double *weights;
+    double *terms;     /* [2 * BANDS * count] buffer, of sums */
     int64_t count;
     double rho[BANDS]; /* (r0, r) */
 };
 
+/* Collective. (x, y) and (y, y). */
+static void products(const struct vectors *z, const struct rgb *x, const struct rgb *y,
+                     struct rgb both[2])
+{
+    double sums[2 * BANDS], *term = z->terms;
+    for (int64_t i = 0; i < z->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            double weighted = z->weights[i] * y[i].band[c];
+            *term++ = weighted * x[i].band[c];
+            *term++ = weighted * y[i].band[c];
+        }
+    total_up(z->totals, z->terms, z->count, 2 * BANDS, sums);
+    for (int c = 0; c < BANDS; c++) {
+        both[0].band[c] = sums[2 * c];
+        both[1].band[c] = sums[2 * c + 1];
+    }
+}
+
 static struct rgb product(const struct vectors *z, const struct rgb *x,
                           const struct rgb *y)
 {
-    struct rgb sum = {{0.0, 0.0, 0.0}};
+    struct rgb sum;
+    double *term = z->terms;
     for (int64_t i = 0; i < z->count; i++)
         for (int c = 0; c < BANDS; c++)
-            sum.band[c] += z->weights[i] * x[i].band[c] * y[i].band[c];
+            *term++ = z->weights[i] * x[i].band[c] * y[i].band[c];
+    total_up(z->totals, z->terms, z->count, BANDS, sum.band);
     return sum;
 }
 
-static double size_of(const struct vectors *z, const struct rgb *x)
+/* Collective. The residual over the solution. */
+static double residual_of(const struct vectors *z, const struct rgb *x)
 {
-    double sum = 0.0;
-    for (int64_t i = 0; i < z->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            sum += z->weights[i] * fabs(x[i].band[c]);
-    return sum;
+    double sums[2];
+    for (int64_t i = 0; i < z->count; i++) {
+        double *term = z->terms + 2 * i;
+        term[0] = term[1] = 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            term[0] += z->weights[i] * fabs(z->r[i].band[c]);
+            term[1] += z->weights[i] * fabs(x[i].band[c]);
+        }
+    }
+    total_up(z->totals, z->terms, z->count, 2, sums);
+    return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
 
 /* y += factor x, band by band. */
@@ -66,7 +96,7 @@ static void begin(struct vectors *z)
 /* False if nothing has moved. */
 static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *x)
 {
-    struct rgb a, minus, o, turn;
+    struct rgb a, minus, o, turn, both[2];
     map(context, z->p, z->v);
     struct rgb under = product(z, z->r0, z->v);
     for (int c = 0; c < BANDS; c++) {
@@ -75,9 +105,9 @@ static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *
     }
     add(z->r, z->v, minus, z->count); /* s */
     map(context, z->r, z->t);
-    struct rgb along = product(z, z->t, z->r), length = product(z, z->t, z->t);
+    products(z, z->r, z->t, both);
     for (int c = 0; c < BANDS; c++) {
-        o.band[c] = quotient(along.band[c], length.band[c]);
+        o.band[c] = quotient(both[0].band[c], both[1].band[c]);
         minus.band[c] = -o.band[c];
     }
     add(x, z->p, a, z->count);
@@ -97,18 +127,20 @@ static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *
     return moved;
 }
 
-struct bicgstab bicgstab_solve(linear_map *map, void *context, const double *weights,
+struct bicgstab bicgstab_solve(linear_map *map, void *context,
+                               const struct totals *totals, const double *weights,
                                int64_t count, struct bicgstab_end end, struct rgb *x,
                                struct rgb *r)
 {
     struct rgb *room = alloc_array(4 * (size_t)count, sizeof *room);
     struct vectors z = {.r = r, .r0 = room, .p = room + count, .v = room + 2 * count,
-                        .t = room + 3 * count, .weights = weights, .count = count};
+                        .t = room + 3 * count, .totals = totals, .weights = weights,
+                        .count = count};
     struct bicgstab done = {0, 0.0};
     bool fresh = true, moved = true;
+    z.terms = alloc_array(2 * BANDS * (size_t)count, sizeof *z.terms);
     for (;; done.steps++) {
-        double size = size_of(&z, x);
-        done.residual = size > 0.0 ? size_of(&z, r) / size : 0.0;
+        done.residual = residual_of(&z, x);
         if (done.steps == 0)
             end.residual = fmax(end.residual, end.part * done.residual);
         if (done.residual <= end.residual || done.steps == end.steps || (fresh && !moved))
@@ -118,6 +150,7 @@ struct bicgstab bicgstab_solve(linear_map *map, void *context, const double *wei
         fresh = !step(&z, map, context, x);
         moved = !fresh;
     }
+    alloc_free(z.terms);
     alloc_free(room);
     return done;
 }

@@ -1,12 +1,14 @@
-/* Systems of unsymmetric linear equations, for the three bands side by side. */
+/* Systems of unsymmetric linear equations, for the three bands side by side. Each rank
+ * has some of the unknowns. */
 #ifndef RAD_BEYOND_BICGSTAB_H
 #define RAD_BEYOND_BICGSTAB_H
 
 #include <stdint.h>
 
 #include "geom/vec.h"
+#include "rad/beyond/total.h"
 
-/* y = A x, vectors as below. */
+/* Collective. y = A x, vectors as below. */
 typedef void linear_map(void *context, const struct rgb *x, struct rgb *y);
 
 struct bicgstab {
@@ -21,9 +23,11 @@ struct bicgstab_end {
     int steps;
 };
 
-/* Improves x. `r`: its residual b - A x, before and after. Vectors are [count]; `weights`
- * [count], above 0, are those of their scalar product. */
-struct bicgstab bicgstab_solve(linear_map *map, void *context, const double *weights,
+/* Collective. Improves x. `r`: its residual b - A x, before and after. Vectors are
+ * [count], of this rank; `weights`, [count], above 0, are those of their scalar
+ * product. */
+struct bicgstab bicgstab_solve(linear_map *map, void *context,
+                               const struct totals *totals, const double *weights,
                                int64_t count, struct bicgstab_end end, struct rgb *x,
                                struct rgb *r);
 

@@ -24,9 +24,26 @@
  * more than this part of what is absorbed. */
 static const double CRACKS = 1e-5;
 
+/* Sums of a space at a time, at most. */
+enum { COLUMNS = 2 * BANDS };
+
 static int32_t spaces_of(const struct light_balance *b)
 {
     return lit_count(b->equation->gather->model);
+}
+
+/* Spaces with a balance of their own. */
+static int32_t balances_of(const struct light_balance *b)
+{
+    return b->apart ? spaces_of(b) : 1;
+}
+
+/* Collective. Sums up b->terms, [columns] of each leaf, balance by balance. */
+static void sum_up(struct light_balance *b, int columns)
+{
+    const struct equation *e = b->equation;
+    total_groups(&e->totals, b->terms, b->apart ? e->space : NULL, e->count,
+                 balances_of(b), columns, b->sums);
 }
 
 /* In a closed space a leaf keeps all of its light; or none, if it faces out. */
@@ -47,6 +64,8 @@ struct light_balance balance_start(struct equation *equation, int64_t crossed)
     b.closed = alloc_array((size_t)spaces, sizeof *b.closed);
     b.flows = alloc_array((size_t)spaces, sizeof *b.flows);
     b.spread = alloc_array((size_t)equation->count, sizeof *b.spread);
+    b.terms = alloc_array(COLUMNS * (size_t)equation->count, sizeof *b.terms);
+    b.sums = alloc_array(COLUMNS * (size_t)spaces, sizeof *b.sums);
     int64_t rays = 0, escaped = 0;
     for (int32_t s = 0; s < spaces; s++) {
         rays += fired[2 * s];
@@ -69,11 +88,13 @@ void balance_free(struct light_balance *b)
     alloc_free(b->closed);
     alloc_free(b->flows);
     alloc_free(b->spread);
+    alloc_free(b->terms);
+    alloc_free(b->sums);
 }
 
 struct flows *balance_of(const struct light_balance *b, int64_t leaf)
 {
-    return &b->flows[b->apart ? equation_space(b->equation, leaf) : 0];
+    return &b->flows[b->apart ? b->equation->space[leaf] : 0];
 }
 
 double balance_missing(const struct light_balance *b)
@@ -87,38 +108,46 @@ double balance_missing(const struct light_balance *b)
 
 void balance_spread(struct light_balance *b, const struct rgb *h)
 {
-    for (int64_t i = 0; i < b->equation->count; i++)
+    const struct equation *e = b->equation;
+    for (int64_t i = 0; i < e->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            double *own = &b->spread[i].band[c];
+            double stays = 1.0 - equation_material(e, i)->transmittance.band[c];
+            *own = h[i].band[c] / e->mesh->rays[e->number[i]];
+            b->terms[BANDS * i + c] = equation_bare_area(e, i) * stays * *own;
+        }
+    sum_up(b, BANDS);
+    for (int32_t s = 0; s < balances_of(b); s++)
         for (int c = 0; c < BANDS; c++)
-            b->spread[i].band[c] = h[i].band[c] / b->equation->mesh->rays[i];
+            b->flows[s].all.band[c] = b->sums[BANDS * s + c];
 }
 
 void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
                    struct rgb *h)
 {
     const struct equation *e = b->equation;
-    for (int32_t s = 0; s < spaces_of(b); s++)
-        b->flows[s] = (struct flows){.leaving = {{0.0, 0.0, 0.0}}};
+    double *term = b->terms;
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
         double bare = equation_bare_area(e, i), kept = (double)e->covers[i].kept * bare;
-        double more = lamps ? equation_shining_area(e, i) - kept : 0.0;
-        struct flows *own = balance_of(b, i);
+        bool shines = lamps && material_emits(m);
+        double more = shines ? equation_shining_area(e, i) - kept : 0.0;
         for (int c = 0; c < BANDS; c++) {
             double stays = bare * (1.0 - m->transmittance.band[c]);
-            own->leaving.band[c] += kept * from[i].band[c] + more * m->emission.band[c];
-            own->arriving.band[c] += stays * h[i].band[c];
-            own->spread.band[c] += stays * b->spread[i].band[c];
+            *term++ = kept * from[i].band[c] + more * m->emission.band[c]; /* leaving */
+            *term++ = stays * h[i].band[c]; /* arriving */
         }
     }
-    for (int32_t s = 0; s < spaces_of(b); s++)
+    sum_up(b, 2 * BANDS);
+    for (int32_t s = 0; s < balances_of(b); s++)
         for (int c = 0; c < BANDS; c++) {
             struct flows *own = &b->flows[s];
+            const double *sum = &b->sums[2 * (BANDS * s + c)];
             /* where no light arrives, none is missing */
-            bool lit = own->spread.band[c] > 0.0 && b->closed[s];
-            double leaving = own->leaving.band[c];
-            double missing = lit ? leaving - own->arriving.band[c] : 0.0;
-            own->spread.band[c] = lit ? missing / own->spread.band[c] : 0.0;
-            own->missing.band[c] = leaving > 0.0 ? missing / leaving : 0.0;
+            bool lit = own->all.band[c] > 0.0 && b->closed[s];
+            double missing = lit ? sum[0] - sum[1] : 0.0;
+            own->spread.band[c] = lit ? missing / own->all.band[c] : 0.0;
+            own->missing.band[c] = sum[0] > 0.0 ? missing / sum[0] : 0.0;
         }
     for (int64_t i = 0; i < e->count; i++)
         for (int c = 0; c < BANDS; c++)
@@ -128,53 +157,52 @@ void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
 void balance_absorb(struct light_balance *b, struct rgb *h)
 {
     const struct equation *e = b->equation;
-    for (int32_t s = 0; s < spaces_of(b); s++)
-        b->flows[s].leaving = b->flows[s].arriving = (struct rgb){{0.0, 0.0, 0.0}};
+    double *term = b->terms;
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
-        struct flows *own = balance_of(b, i);
+        double area = material_emits(m) ? equation_shining_area(e, i) : 0.0;
         for (int c = 0; c < BANDS; c++) {
             double on = (double)e->covers[i].kept * m->reflectance.band[c] +
                         m->transmittance.band[c];
-            own->leaving.band[c] += equation_shining_area(e, i) * m->emission.band[c];
-            own->arriving.band[c] += equation_bare_area(e, i) * (1.0 - on) * h[i].band[c];
+            *term++ = area * m->emission.band[c]; /* emitted */
+            *term++ = equation_bare_area(e, i) * (1.0 - on) * h[i].band[c];
         }
     }
+    sum_up(b, 2 * BANDS);
     for (int64_t i = 0; i < e->count; i++)
         for (int c = 0; c < BANDS; c++) {
-            const struct flows *own = balance_of(b, i);
-            double gone = own->arriving.band[c];
-            if (gone > 0.0 && b->closed[own - b->flows])
-                h[i].band[c] *= own->leaving.band[c] / gone;
+            int64_t s = balance_of(b, i) - b->flows;
+            const double *sum = &b->sums[2 * (BANDS * s + c)]; /* emitted, absorbed */
+            if (sum[1] > 0.0 && b->closed[s])
+                h[i].band[c] *= sum[0] / sum[1];
         }
 }
 
 bool balance_find_more(struct light_balance *b, const struct rgb *radiosity)
 {
     const struct equation *e = b->equation;
-    int32_t spaces = spaces_of(b);
-    double *lost = alloc_array((size_t)spaces, sizeof *lost);
-    double *absorbed = alloc_array((size_t)spaces, sizeof *absorbed);
     bool more = false;
     for (int64_t i = 0; i < e->count; i++) {
-        int64_t s = balance_of(b, i) - b->flows;
         struct rgb rho = equation_material(e, i)->reflectance;
         double kept = (double)e->covers[i].kept, bare = equation_bare_area(e, i);
         const struct forest *forest = e->gather->model->forest;
-        uint32_t root = forest->patches[e->mesh->leaves[i]].id.root;
-        if (scene_is_sky(forest->scene, (int32_t)root))
-            lost[s] = HUGE_VAL;
+        uint32_t root = forest->patches[e->patch[i]].id.root;
+        double *term = &b->terms[3 * i], lost = (1.0 - kept) * bare;
+        term[0] = 0.0; /* absorbed */
         for (int c = 0; c < BANDS; c++)
-            absorbed[s] += bare * (1.0 - rho.band[c]) * radiosity[i].band[c];
-        if (kept > 0.0 && !e->mesh->cut[e->mesh->leaves[i]])
-            lost[s] += (1.0 - kept) * bare * rgb_sum(radiosity[i]);
+            term[0] += bare * (1.0 - rho.band[c]) * radiosity[i].band[c];
+        bool tells = kept > 0.0 && !e->mesh->cut[e->patch[i]];
+        term[1] = tells ? lost * rgb_sum(radiosity[i]) : 0.0;
+        term[2] = scene_is_sky(forest->scene, (int32_t)root);
     }
-    for (int32_t s = 0; s < spaces; s++)
-        if (!b->closed[s] && absorbed[s] > 0.0 && lost[s] <= CRACKS * absorbed[s])
+    sum_up(b, 3);
+    for (int32_t s = 0; s < balances_of(b); s++) {
+        double absorbed = b->sums[3 * s], lost = b->sums[3 * s + 1];
+        bool sky = b->sums[3 * s + 2] > 0.0;
+        if (!b->closed[s] && !sky && absorbed > 0.0 && lost <= CRACKS * absorbed)
             more = b->any = b->closed[s] = true;
+    }
     keep_light(b);
-    alloc_free(absorbed);
-    alloc_free(lost);
     return more;
 }
 
@@ -182,24 +210,22 @@ void balance_find_unsure(struct light_balance *b, const struct rgb *h,
                          const struct rgb *reflected, const struct rgb *again)
 {
     const struct equation *e = b->equation;
-    int32_t spaces = spaces_of(b);
-    struct rgb *missing = alloc_array((size_t)spaces, sizeof *missing);
-    double *straight = alloc_array((size_t)spaces, sizeof *straight);
     for (int64_t i = 0; i < e->count; i++) {
-        int64_t s = balance_of(b, i) - b->flows;
         double bare = equation_bare_area(e, i), kept = (double)e->covers[i].kept;
+        double *term = &b->terms[(BANDS + 1) * i];
+        term[BANDS] = 0.0; /* straight from lamps */
         for (int c = 0; c < BANDS; c++) {
-            missing[s].band[c] += bare * (kept * reflected[i].band[c] - again[i].band[c]);
-            straight[s] += bare * (h[i].band[c] - again[i].band[c]);
+            term[c] = bare * (kept * reflected[i].band[c] - again[i].band[c]);
+            term[BANDS] += bare * (h[i].band[c] - again[i].band[c]);
         }
     }
-    for (int32_t s = 0; s < spaces; s++) {
+    sum_up(b, BANDS + 1);
+    for (int32_t s = 0; s < balances_of(b); s++) {
+        const double *missing = &b->sums[(BANDS + 1) * s], straight = missing[BANDS];
         double all = 0.0;
         for (int c = 0; c < BANDS; c++)
-            all += fabs(missing[s].band[c]);
-        if (!b->closed[s] && straight[s] > 0.0) /* the balance sees to closed ones */
-            b->flows[s].unsure = fmin(1.0, all / straight[s]);
+            all += fabs(missing[c]);
+        if (!b->closed[s] && straight > 0.0) /* the balance sees to closed ones */
+            b->flows[s].unsure = fmin(1.0, all / straight);
     }
-    alloc_free(straight);
-    alloc_free(missing);
 }

@@ -4,12 +4,12 @@
 
 #include "rad/beyond/gather/equation.h"
 
-/* Light of the surfaces of a space, W in square scene units; factors of a balance. */
+/* Of the balance of a space. */
 struct flows {
-    struct rgb leaving, arriving; /* W; or emitted and absorbed */
-    struct rgb spread;            /* as irradiance is spread, W */
-    struct rgb missing;           /* part of the light last leaving that did not arrive */
-    double unsure;                /* part of B that light may be off by in the end */
+    struct rgb all;     /* light of light_balance.spread, W in square scene units */
+    struct rgb spread;  /* missing light over this, 1 */
+    struct rgb missing; /* part of the light last leaving that did not arrive */
+    double unsure;      /* part of B that light may be off by in the end */
 };
 
 struct light_balance {
@@ -19,6 +19,8 @@ struct light_balance {
     bool *closed;        /* [lit_count()] hardly any ray of a space escapes, or light */
     struct flows *flows; /* [lit_count()] of spaces, or the first of all together */
     struct rgb *spread;  /* [leaves] how missing light is spread, W/m^2 a ray */
+    double *terms;       /* buffer: of sums, for each leaf */
+    double *sums;        /* buffer: W in square scene units, for each balance */
 };
 
 /* Finds the closed spaces. A space seen from another has no balance of its own: then all
@@ -34,7 +36,8 @@ struct flows *balance_of(const struct light_balance *b, int64_t leaf);
 /* The largest part of light missing in any band of a space. */
 double balance_missing(const struct light_balance *b);
 
-/* Spreads missing light as the irradiances `h` over the numbers of rays. */
+/* Collective, like all below. Spreads missing light as the irradiances `h` over the
+ * numbers of rays. */
 void balance_spread(struct light_balance *b, const struct rgb *h);
 
 /* Adds missing light to irradiances `h` for the radiosities `from`, so that as much

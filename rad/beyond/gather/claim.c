@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "rad/flux.h"
 
 /* The error of 95 % of leaves is less than this many deviations: these are estimated for
  * many leaves together, and single ones are noisier or calmer. */
@@ -54,7 +55,8 @@ void claim_by_mesh(const struct equation *e, struct rgb *variance)
     }
 }
 
-void claim_find_changes(const struct equation *e, struct rgb *change)
+void claim_find_noise(const struct equation *e, struct rgb *by_rays,
+                      struct rgb *by_segments)
 {
     const struct final_gather *gather = e->gather;
     const struct rgb *linked = gather->model->forest->radiosity;
@@ -79,25 +81,23 @@ void claim_find_changes(const struct equation *e, struct rgb *change)
                 variance[i] = squares[i].band[c] -
                               sums[i].band[c] * sums[i].band[c] / all.band[c];
             bool any = variance[0] > 0.0 && variance[1] > 0.0;
-            change[row].band[c] = any ? variance[1] / variance[0] : 1.0;
+            double change = any ? variance[1] / variance[0] : 1.0;
+            double segments = gather->rows[row].of_segments[c];
+            by_rays[row].band[c] = change * (gather->rows[row].chance[c] - segments);
+            by_segments[row].band[c] = segments;
         }
     }
 }
 
-/* Raises the variance of a leaf to the mean over its sisters, each by one ray. The rays
- * of the leaf may have missed a small bright thing that a sister has found: then its
- * light is too dark, and its own variance too small. `rays`: of each leaf; or
- * segments. */
-static void raise_to_sisters(const struct equation *e, const int *rays,
-                             struct rgb *variance)
+void claim_raise_to_sisters(const struct forest *forest, const int32_t *leaves,
+                            int64_t count, const int *rays, struct rgb *variance)
 {
-    const struct patch *patches = e->gather->model->forest->patches;
-    size_t count = (size_t)e->gather->model->forest->count;
-    struct rgb *sums = alloc_array(count, sizeof *sums);
-    uint8_t *sisters = alloc_array(count, sizeof *sisters);
+    const struct patch *patches = forest->patches;
+    struct rgb *sums = alloc_array((size_t)forest->count, sizeof *sums);
+    uint8_t *sisters = alloc_array((size_t)forest->count, sizeof *sisters);
     for (int raises = 0; raises < 2; raises++)
-        for (int64_t i = 0; i < e->count; i++) {
-            int32_t parent = patches[e->mesh->leaves[i]].parent;
+        for (int64_t i = 0; i < count; i++) {
+            int32_t parent = patches[leaves[i]].parent;
             if (parent < 0)
                 continue;
             double *v = variance[i].band;
@@ -111,11 +111,6 @@ static void raise_to_sisters(const struct equation *e, const int *rays,
     alloc_free(sisters);
     alloc_free(sums);
 }
-
-/* Variances of a class of leaves, summed up, each times its leaf's area. */
-struct noise {
-    double by_halves, by_chance;
-};
 
 /* The class of a leaf by its H in a band. Each has twice the light of the one before. */
 static int class_of(double light, double mean)
@@ -137,36 +132,45 @@ static double irradiance_of(const struct equation *e, int64_t leaf, int band)
     return rho > 0.0 ? fmax(0.0, (b - m->emission.band[band]) / rho) : 0.0;
 }
 
-/* Adds each leaf, a band at a time, to a class of its space, of [CLASSES * lit_count()]
- * all classes, whose number `own`, [BANDS * count], tells. Leaves count by their area and
- * the square of their reflectance. */
-static void classify(const struct equation *e, const struct rgb *halves,
-                     const struct rgb *chance, struct noise *classes, int32_t *own)
+/* Variances of a class of leaves, summed up, each times its leaf's weight. */
+struct noise {
+    double by_halves, by_chance;
+};
+
+/* Collective. Adds each leaf, a band at a time, to a class of its space, of
+ * [CLASSES * lit_count()] all classes, whose number `own`, [BANDS * count], tells. Leaves
+ * count by their area and the square of their reflectance. */
+static void classify(const struct equation *e, struct noise *classes, int32_t *own)
 {
-    double *light = alloc_array(BANDS * (size_t)e->count, sizeof *light);
-    double *weight = alloc_array(BANDS * (size_t)e->count, sizeof *weight);
-    size_t spaces = (size_t)lit_count(e->gather->model);
-    double *sum = alloc_array(spaces, sizeof *sum);
-    double *all = alloc_array(spaces, sizeof *all);
-    for (int64_t k = 0; k < BANDS * e->count; k++) {
+    const struct gather_row *rows = e->gather->rows;
+    enum { COLUMNS = sizeof *classes / sizeof(double) };
+    int32_t spaces = lit_count(e->gather->model);
+    int64_t all = BANDS * e->count;
+    double *light = alloc_array((size_t)all, sizeof *light);
+    double *terms = alloc_array(COLUMNS * (size_t)all, sizeof *terms);
+    double *sums = alloc_array(2 * (size_t)spaces, sizeof *sums);
+    for (int64_t k = 0; k < all; k++) {
         int64_t i = k / BANDS;
-        int32_t s = equation_space(e, i);
         double rho = equation_material(e, i)->reflectance.band[k % BANDS];
+        own[k] = e->space[i];
         light[k] = irradiance_of(e, i, (int)(k % BANDS));
-        weight[k] = e->areas[i] * rho * rho;
-        sum[s] += weight[k] * light[k];
-        all[s] += weight[k];
+        terms[2 * k + 1] = e->areas[i] * rho * rho;
+        terms[2 * k] = terms[2 * k + 1] * light[k];
     }
-    for (int64_t k = 0; k < BANDS * e->count; k++) {
-        int32_t s = equation_space(e, k / BANDS);
-        own[k] = CLASSES * s + class_of(light[k], sum[s] / all[s]);
-        struct noise *class = &classes[own[k]];
-        class->by_halves += weight[k] * halves[k / BANDS].band[k % BANDS];
-        class->by_chance += weight[k] * chance[k / BANDS].band[k % BANDS];
+    total_groups(&e->totals, terms, own, all, spaces, 2, sums);
+    for (int64_t k = 0; k < all; k++) {
+        int64_t i = k / BANDS;
+        const double *sum = &sums[2 * own[k]];
+        double rho = equation_material(e, i)->reflectance.band[k % BANDS];
+        double weight = e->areas[i] * rho * rho;
+        own[k] = CLASSES * own[k] + class_of(light[k], sum[0] / sum[1]);
+        terms[COLUMNS * k] = weight * rows[i].halves[k % BANDS];
+        terms[COLUMNS * k + 1] = weight * rows[i].chance[k % BANDS];
     }
-    alloc_free(all);
-    alloc_free(sum);
-    alloc_free(weight);
+    total_groups(&e->totals, terms, own, all, CLASSES * spaces, COLUMNS,
+                 (double *)classes);
+    alloc_free(sums);
+    alloc_free(terms);
     alloc_free(light);
 }
 
@@ -184,25 +188,15 @@ static double ratio_of_sequence(const struct noise *class)
     return ratio / (2.0 - ratio);
 }
 
-void claim_by_rays(const struct equation *e, const struct rgb *halves,
-                   const struct rgb *change, struct rgb *segments, struct rgb *variance)
+void claim_by_rays(const struct equation *e, struct rgb *variance)
 {
     int32_t all = CLASSES * lit_count(e->gather->model);
     struct noise *classes = alloc_array((size_t)all, sizeof *classes);
     double *ratios = alloc_array((size_t)all, sizeof *ratios);
     int32_t *own_class = alloc_array(BANDS * (size_t)e->count, sizeof *own_class);
-    classify(e, halves, variance, classes, own_class);
+    classify(e, classes, own_class);
     for (int32_t k = 0; k < all; k++)
         ratios[k] = ratio_of_sequence(&classes[k]);
-    for (int64_t i = 0; i < e->count; i++) {
-        variance[i] = rgb_sub(variance[i], segments[i]);
-        for (int c = 0; c < BANDS; c++)
-            variance[i].band[c] *= change[i].band[c];
-    }
-    raise_to_sisters(e, e->mesh->rays, variance);
-    raise_to_sisters(e, e->mesh->segments, segments);
-    for (int64_t i = 0; i < e->count; i++)
-        rgb_add(&variance[i], 1.0, segments[i]);
     for (int64_t k = 0; k < BANDS * e->count; k++)
         variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
     alloc_free(own_class);
@@ -212,58 +206,83 @@ void claim_by_rays(const struct equation *e, const struct rgb *halves,
 
 /* Sums over the reflecting leaves of a space, but the first by area, (W/m^2)^2. */
 struct space_error {
-    int64_t leaves;
-    double by_rays, by_mesh, light;
-    double lacking; /* part of B that light may be off by in the end */
+    double leaves, by_rays, by_mesh, light;
 };
 
-/* Sums up the errors of spaces: each counts by its leaves, relative to its own light. */
-static void sum_errors(const struct space_error *spaces, int32_t count,
-                       struct gathered *told)
+/* The part of B that the light of a space may be off by in the end. */
+static double lacking_of(const struct light_balance *balance, int32_t space,
+                         double remaining)
 {
-    int64_t leaves = 0;
-    double by_rays = 0.0, by_mesh = 0.0, all = 0.0;
+    return remaining + balance->flows[balance->apart ? space : 0].unsure;
+}
+
+/* Sums up the errors of spaces: each counts by its leaves, relative to its own light. */
+static void sum_errors(const struct light_balance *balance, double remaining,
+                       const struct space_error *spaces, struct gathered *told)
+{
+    int32_t count = lit_count(balance->equation->gather->model);
+    double leaves = 0.0, by_rays = 0.0, by_mesh = 0.0, all = 0.0;
     for (int32_t s = 0; s < count; s++)
         leaves += spaces[s].leaves;
     for (int32_t s = 0; s < count; s++) {
         if (!(spaces[s].light > 0.0))
             continue;
-        double part = (double)spaces[s].leaves / (double)leaves;
+        double part = spaces[s].leaves / leaves;
+        double lacking = lacking_of(balance, s, remaining);
         by_rays += part * (spaces[s].by_rays / spaces[s].light);
         by_mesh += part * (spaces[s].by_mesh / spaces[s].light);
         all += part * ((spaces[s].by_rays + spaces[s].by_mesh) / spaces[s].light +
-                       spaces[s].lacking * spaces[s].lacking);
+                       lacking * lacking);
     }
     told->by_rays = sqrt(by_rays);
     told->by_mesh = sqrt(by_mesh);
     told->error = sqrt(all);
 }
 
-/* The part of leaves whose light is off by more than `limit`, with these deviations, in
- * the same unit: errors are normal (Abramowitz and Stegun, 26.2.18, to 2.5e-4). */
-static double part_beyond(const double *deviations, int64_t count, double limit)
+/* The error that a part of the leaves exceeds, by their deviations, is searched for. */
+struct quantile {
+    const double *deviations; /* [count] */
+    double part;
+    double low, high;         /* bounds on the error */
+};
+
+/* The sum over leaves of the chance that their light is off by more than `limit`, with
+ * these deviations, in the same unit: errors are normal (Abramowitz and Stegun, 26.2.18,
+ * to 2.5e-4). */
+static int64_t chance_beyond(const double *deviations, int64_t count, double limit,
+                             struct flux_unit unit)
 {
-    double sum = 0.0;
+    int64_t sum = 0; /* of chances in (0, 1] */
     for (int64_t k = 0; k < count; k++) {
         double x = limit / deviations[k];
         double root = 0.115194 + x * (0.000344 + x * 0.019527);
         root = 1.0 + x * (0.196854 + x * root);
-        sum += 1.0 / (root * root * root * root);
+        sum += llrint(unit.per_watt / (root * root * root * root));
     }
-    return count > 0 ? sum / (double)count : 0.0;
+    return sum;
 }
 
-/* The error, at most 1, that this part of the leaves exceeds. A leaf counts as one: by
- * area a lawn would decide for the rooms of a house. */
-static double error_exceeded(const double *deviations, int64_t count, double part)
+/* Collective. Finds errors, at most 1, of which there are `count` on this rank. A leaf
+ * counts as one: by area a lawn would decide for the rooms of a house. */
+static void find_quantiles(const struct totals *totals, struct quantile *quantiles,
+                           int64_t count)
 {
-    enum { HALVINGS = 40 };
-    double low = 0.0, high = 1.0;
+    enum { HALVINGS = 40, QUANTILES = 4 };
+    struct flux_unit unit = flux_unit_for((double)totals->terms);
+    int64_t all = count, beyond[QUANTILES];
+    totals_add(totals, &all, 1);
     for (int k = 0; k < HALVINGS; k++) {
-        double middle = 0.5 * (low + high);
-        *(part_beyond(deviations, count, middle) > part ? &low : &high) = middle;
+        for (int q = 0; q < QUANTILES; q++) {
+            double middle = 0.5 * (quantiles[q].low + quantiles[q].high);
+            beyond[q] = chance_beyond(quantiles[q].deviations, count, middle, unit);
+        }
+        totals_add(totals, beyond, QUANTILES);
+        for (int q = 0; q < QUANTILES; q++) {
+            struct quantile *own = &quantiles[q];
+            bool more = flux_to_watts(unit, beyond[q]) > own->part * (double)all;
+            *(more ? &own->low : &own->high) = 0.5 * (own->low + own->high);
+        }
     }
-    return high;
 }
 
 double claim_deviation(double error)
@@ -272,51 +291,57 @@ double claim_deviation(double error)
 }
 
 void claim_errors(const struct light_balance *balance, double remaining,
-                  const struct rgb *mesh, const struct rgb *rays, float *error,
+                  const struct rgb *mesh, const struct rgb *rays, double *error,
                   struct gathered *told)
 {
+    enum { COLUMNS = sizeof(struct space_error) / sizeof(double) };
     const struct equation *e = balance->equation;
-    size_t count = (size_t)e->count;
+    size_t count = (size_t)e->count, spaces = (size_t)lit_count(e->gather->model);
     double *own_errors = alloc_array(3 * count, sizeof *own_errors);
     double *all = own_errors, *by_rays = all + count, *by_mesh = by_rays + count;
-    int32_t spaces = lit_count(e->gather->model);
-    struct space_error *sums = alloc_array((size_t)spaces, sizeof *sums);
+    struct space_error *terms = alloc_array(count, sizeof *terms);
+    struct space_error *sums = alloc_array(spaces, sizeof *sums);
     int64_t listed = 0;
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
         struct rgb b = e->radiosity[equation_place(e, i)];
-        struct space_error *sum = &sums[equation_space(e, i)];
-        double largest = 0.0, own = 0.0, square[2] = {0.0, 0.0};
-        double lacking = remaining + balance_of(balance, i)->unsure;
-        sum->lacking = lacking;
-        sum->leaves += rgb_sum(m->reflectance) > 0.0;
+        struct space_error *term = &terms[i];
+        double own = 0.0, square[2] = {0.0, 0.0};
+        double lacking = lacking_of(balance, e->space[i], remaining);
+        term->leaves = rgb_sum(m->reflectance) > 0.0;
+        error[i] = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c], h = irradiance_of(e, i, c);
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             double reflected = b.band[c] - m->emission.band[c];
             double lacks = lacking * b.band[c];
-            largest = fmax(largest,
-                           BOUND * sqrt(deviation * deviation + lacks * lacks));
+            error[i] = fmax(error[i],
+                            BOUND * sqrt(deviation * deviation + lacks * lacks));
             square[0] += rho * rho * rays[i].band[c];
             square[1] += rho * rho * mesh[i].band[c];
-            sum->light += e->areas[i] * reflected * reflected;
+            term->light += e->areas[i] * reflected * reflected;
             own += rho * rho * h * h;
         }
-        sum->by_rays += e->areas[i] * square[0];
-        sum->by_mesh += e->areas[i] * square[1];
-        error[e->mesh->leaves[i]] = (float)largest;
+        term->by_rays = e->areas[i] * square[0];
+        term->by_mesh = e->areas[i] * square[1];
         bool shown = e->covers[i].outside > 0.0f; /* nothing hides all of it */
         if (!shown || !(square[0] + square[1] + own > 0.0))
             continue;
-        all[listed] = sqrt((square[0] + square[1]) / own + lacking * lacking);
-        by_rays[listed] = sqrt(square[0] / own);
-        by_mesh[listed++] = sqrt(square[1] / own);
+        by_rays[listed] = square[0] > 0.0 ? sqrt(square[0] / own) : 0.0;
+        by_mesh[listed] = square[1] > 0.0 ? sqrt(square[1] / own) : 0.0;
+        all[listed++] = sqrt((square[0] + square[1]) / own + lacking * lacking);
     }
-    told->median = error_exceeded(all, listed, 0.5);
-    told->worst_tenth = error_exceeded(all, listed, 0.1);
-    told->median_by_rays = error_exceeded(by_rays, listed, 0.5);
-    told->median_by_mesh = error_exceeded(by_mesh, listed, 0.5);
-    sum_errors(sums, spaces, told);
+    struct quantile quantiles[] = {{all, 0.5, 0.0, 1.0}, {all, 0.1, 0.0, 1.0},
+                                   {by_rays, 0.5, 0.0, 1.0}, {by_mesh, 0.5, 0.0, 1.0}};
+    find_quantiles(&e->totals, quantiles, listed);
+    told->median = quantiles[0].high;
+    told->worst_tenth = quantiles[1].high;
+    told->median_by_rays = quantiles[2].high;
+    told->median_by_mesh = quantiles[3].high;
+    total_groups(&e->totals, (double *)terms, e->space, e->count, (int32_t)spaces,
+                 COLUMNS, (double *)sums);
+    sum_errors(balance, remaining, sums, told);
     alloc_free(sums);
+    alloc_free(terms);
     alloc_free(own_errors);
 }

@@ -10,23 +10,29 @@
  * variances. Pre: e->radiosity is the solution, as for the next. */
 void claim_by_mesh(const struct equation *e, struct rgb *variance);
 
-/* How much the variance of each row by rays changes as the light of the links gives way
- * to the solution, 1: links may have brought much light through a window, or none. As if
- * each ray brought the light of a term: all rays weigh the same. Pre: the forest has the
- * light of the links. */
-void claim_find_changes(const struct equation *e, struct rgb *change);
+/* The variance of each row by the choice of rays, if by chance, and of segments. By rays
+ * it changes as the light of the links gives way to the solution: links may have brought
+ * much light through a window, or none. As if each ray brought the light of a term: all
+ * rays weigh the same. Pre: the forest has the light of the links. */
+void claim_find_noise(const struct equation *e, struct rgb *by_rays,
+                      struct rgb *by_segments);
 
-/* Makes `variance`, by chance, the one by the choice of rays: as it changes, times the
- * sequence's ratio, estimated over all leaves with about as much light. All are by leaf,
- * [count]: `halves`, and of `variance` the part by `segments`, from the rows. */
-void claim_by_rays(const struct equation *e, const struct rgb *halves,
-                   const struct rgb *change, struct rgb *segments, struct rgb *variance);
+/* Raises the variance of leaves, [count], to the mean over their sisters, each by one
+ * ray. The rays of a leaf may have missed a small bright thing that a sister has found:
+ * then its light is too dark, and its own variance too small. `rays`: of each leaf; or
+ * segments. */
+void claim_raise_to_sisters(const struct forest *forest, const int32_t *leaves,
+                            int64_t count, const int *rays, struct rgb *variance);
 
-/* Sets the bound on the error of B of 95 % of leaves, `error`, [patches], W/m^2, by the
+/* Collective. Makes the variance of each row by chance the one by the choice of rays: by
+ * the sequence's ratio, estimated over all leaves with about as much light. */
+void claim_by_rays(const struct equation *e, struct rgb *variance);
+
+/* Collective. Finds the bound on the error of B of 95 % of leaves, `error`, W/m^2, by the
  * largest deviation of a band; and what is told of all errors. `remaining`: what the
  * solution may lack, in parts of B. */
 void claim_errors(const struct light_balance *balance, double remaining,
-                  const struct rgb *mesh, const struct rgb *rays, float *error,
+                  const struct rgb *mesh, const struct rgb *rays, double *error,
                   struct gathered *told);
 
 /* The deviation of which `error`, of a leaf, is the bound. */

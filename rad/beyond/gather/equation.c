@@ -11,9 +11,7 @@
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side.
  * In the residual of the equation a leaf counts by its area and, for one half, relative
- * to its light: else things below a wide sky would be left as the links have them. Rows
- * are dealt to the ranks. All ranks know all vectors, so only W B takes an exchange, and
- * scalar products are the same on all ranks.
+ * to its light: else things below a wide sky would be left as the links have them.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
  * light there (rays.c). There the leaf is darker than in the mean, so its rest, seen by
@@ -43,25 +41,30 @@
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
+/* Arrays have room for all leaves; what is not used of them takes no memory. */
 struct equation equation_start(struct final_gather *gather,
-                               const struct gather_mesh *mesh)
+                               const struct gather_mesh *mesh, struct totals totals)
 {
     const struct forest *forest = gather->model->forest;
     size_t count = (size_t)mesh->count;
-    struct equation e = {.gather = gather, .mesh = mesh, .count = mesh->count};
+    struct equation e = {.gather = gather, .mesh = mesh, .totals = totals};
+    e.patch = alloc_array(count, sizeof *e.patch);
+    e.number = alloc_array(count, sizeof *e.number);
+    e.space = alloc_array(count, sizeof *e.space);
     e.areas = alloc_array(count, sizeof *e.areas);
     e.covers = alloc_array(count, sizeof *e.covers);
     e.near = alloc_array(count, sizeof *e.near);
     e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
     e.radiosity = alloc_array((size_t)forest->count, sizeof *e.radiosity);
     e.outside = alloc_array((size_t)forest->count, sizeof *e.outside);
-    for (int64_t i = 0; i < mesh->count; i++)
-        e.areas[i] = forest_area(forest, mesh->leaves[i]);
     return e;
 }
 
 void equation_free(struct equation *e)
 {
+    alloc_free(e->patch);
+    alloc_free(e->number);
+    alloc_free(e->space);
     alloc_free(e->areas);
     alloc_free(e->covers);
     alloc_free(e->near);
@@ -72,18 +75,25 @@ void equation_free(struct equation *e)
 
 /* --- rows --- */
 
-void equation_make_row(void *equation, int64_t leaf)
+void equation_make_row(void *equation, int64_t number)
 {
     struct equation *e = equation;
+    const struct model *model = e->gather->model;
     const struct gather_mesh *mesh = e->mesh;
     const struct gather_counts *counts = &e->gather->counts;
-    int64_t *fired = e->fired + 2 * equation_space(e, leaf);
+    int32_t patch = mesh->leaves[number], space = node_space(model, patch);
+    int64_t *fired = e->fired + 2 * space, leaf = e->count++;
     fired[0] += 1 - counts->rays;
     fired[1] -= counts->escaped;
-    final_gather_add_row(e->gather, mesh->leaves[leaf], mesh->rays[leaf],
-                         mesh->segments[leaf], mesh->exact[leaf]);
+    final_gather_add_row(e->gather, patch, mesh->rays[number], mesh->segments[number],
+                         mesh->exact[number]);
     fired[0] += counts->rays;
     fired[1] += counts->escaped;
+    e->patch[leaf] = patch;
+    e->number[leaf] = number;
+    e->space[leaf] = space;
+    e->areas[leaf] = forest_area(model->forest, patch);
+    e->covers[leaf] = e->gather->rows[leaf].cover;
 }
 
 void equation_number_near(struct equation *e)
@@ -91,38 +101,41 @@ void equation_number_near(struct equation *e)
     struct final_gather *gather = e->gather;
     struct gather_near *items = gather->near->items;
     int32_t *number = alloc_array((size_t)gather->model->forest->count, sizeof *number);
-    for (int64_t i = 0; i < e->count; i++) {
-        int32_t place = equation_place(e, i);
+    for (int64_t i = 0; i < e->mesh->count; i++) {
+        int32_t place = gather->place[e->mesh->leaves[i]];
+        number[place] = -1;
         if (items[place].area == 0)
             continue;
         number[place] = (int32_t)e->near_count;
         items[e->near_count] = items[place];
-        e->near[e->near_count++] = (struct too_near){i, {{1.0, 1.0, 1.0}}};
+        e->near[e->near_count++] = (struct too_near){-1, {{1.0, 1.0, 1.0}}};
     }
+    for (int64_t i = 0; i < e->count; i++)
+        if (number[equation_place(e, i)] >= 0)
+            e->near[number[equation_place(e, i)]].leaf = i;
     for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
         if (gather->terms[k].near >= 0)
             gather->terms[k].near = number[gather->terms[k].near];
     alloc_free(number);
 }
 
-void equation_find_outside(struct equation *e)
+void equation_find_outside(struct equation *e, const int32_t *place,
+                           const struct rgb *shares)
 {
     const struct forest *forest = e->gather->model->forest;
-    const int32_t *place = e->gather->place;
-    double *share = e->outside;
-    for (int64_t i = 0; i < e->count; i++)
-        share[equation_place(e, i)] = (double)e->covers[i].outside;
-    for (int64_t i = forest->count - 1; i >= 0; i--) {
-        const struct patch *patch = &forest->patches[e->gather->order[i]];
-        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++)
-            share[i] += 0.25 * share[place[patch->children + k]];
-    }
+    const int32_t *at = e->gather->place;
+    for (int64_t k = 0; k < e->mesh->count; k++)
+        e->outside[place[k]] = shares[k].band[0];
+    for (int64_t first = forest->count - 4; first >= forest->root_count; first -= 4)
+        for (int k = 0; k < 4; k++) /* sisters follow each other */
+            e->outside[at[forest->patches[first].parent]] +=
+                0.25 * e->outside[at[first + k]];
 }
 
 double equation_shining_area(const struct equation *e, int64_t leaf)
 {
     const struct forest *forest = e->gather->model->forest;
-    uint32_t root = forest->patches[e->mesh->leaves[leaf]].id.root;
+    uint32_t root = forest->patches[e->patch[leaf]].id.root;
     const struct cover *cover = &e->covers[leaf];
     bool lamp = root_is_sender(e->gather->aims->lamps, (int32_t)root);
     return (lamp ? e->areas[leaf] : equation_bare_area(e, leaf)) *
@@ -139,58 +152,54 @@ static void pull(struct equation *e)
     const struct final_gather *gather = e->gather;
     const struct forest *forest = gather->model->forest;
     const double *share = e->outside;
+    const int32_t *place = gather->place;
     struct rgb *radiosity = e->radiosity;
-    for (int64_t i = forest->count - 1; i >= 0; i--) {
-        const struct patch *patch = &forest->patches[gather->order[i]];
-        if (patch_is_leaf(patch) || !(share[i] > 0.0))
-            continue;
-        for (int c = 0; c < BANDS; c++) {
+    /* sisters follow each other, and are made after their parents */
+    for (int64_t first = forest->count - 4; first >= forest->root_count; first -= 4) {
+        int32_t parent = place[forest->patches[first].parent];
+        for (int c = 0; c < BANDS && share[parent] > 0.0; c++) {
             double sum = 0.0;
-            for (int k = 0; k < 4; k++) {
-                int32_t child = gather->place[patch->children + k];
-                sum += share[child] * radiosity[child].band[c];
-            }
-            radiosity[i].band[c] = 0.25 * sum / share[i];
+            for (int k = 0; k < 4; k++)
+                sum += share[place[first + k]] * radiosity[place[first + k]].band[c];
+            radiosity[parent].band[c] = 0.25 * sum / share[parent];
         }
     }
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t parent = forest->patches[gather->order[i]].parent;
-        if (!(share[i] > 0.0) && parent >= 0 && !(gather->cut && gather->cut[parent]))
-            radiosity[i] = radiosity[gather->place[parent]];
+    for (int64_t p = forest->root_count; p < forest->count; p++) {
+        int32_t parent = forest->patches[p].parent;
+        if (!(share[place[p]] > 0.0) && !(gather->cut && gather->cut[parent]))
+            radiosity[place[p]] = radiosity[place[parent]];
     }
 }
 
-void equation_set(struct equation *e, const struct rgb *b)
+void equation_set(struct equation *e, const int32_t *place, const struct rgb *values)
 {
-    for (int64_t i = 0; i < e->count; i++)
-        e->radiosity[equation_place(e, i)] = b[i];
+    for (int64_t k = 0; k < e->mesh->count; k++)
+        e->radiosity[place[k]] = values[k];
     pull(e);
 }
 
-void equation_show(struct equation *e, const struct rgb *b, bool lamps)
+void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
+                   struct rgb *seen)
 {
     for (int64_t i = 0; i < e->count; i++) {
-        struct rgb *seen = &e->radiosity[equation_place(e, i)];
         double share = fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
         struct rgb emission = equation_material(e, i)->emission;
-        *seen = b[i];
+        seen[i] = b[i];
         for (int c = 0; c < BANDS && share < 1.0; c++) {
             double own = lamps ? emission.band[c] : 0.0;
-            seen->band[c] = own + (b[i].band[c] - own) / share;
+            seen[i].band[c] = own + (b[i].band[c] - own) / share;
         }
     }
     for (int64_t k = 0; k < e->near_count; k++)
-        for (int c = 0; c < BANDS; c++)
-            e->radiosity[equation_place(e, e->near[k].leaf)].band[c] *=
-                e->near[k].shown.band[c];
-    pull(e);
+        for (int c = 0; c < BANDS && e->near[k].leaf >= 0; c++)
+            seen[e->near[k].leaf].band[c] *= e->near[k].shown.band[c];
 }
 
-void equation_show_means(struct equation *e, const struct rgb *b)
+void equation_show_means(struct equation *e, const struct rgb *b, struct rgb *seen)
 {
     for (int64_t k = 0; k < e->near_count; k++)
         e->near[k].shown = (struct rgb){{1.0, 1.0, 1.0}};
-    equation_show(e, b, true);
+    equation_show(e, b, true, seen);
 }
 
 void equation_add_near(const struct equation *e, int64_t *watts)
@@ -213,6 +222,8 @@ void equation_set_shown(struct equation *e, const int64_t *watts)
     const struct gather_nears *nears = e->gather->near;
     for (int64_t k = 0; k < e->near_count; k++) {
         int64_t i = e->near[k].leaf;
+        if (i < 0)
+            continue;
         const struct gather_near *near = &nears->items[k];
         const struct rgb *own = &e->radiosity[equation_place(e, i)];
         double area = e->areas[i] * fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
@@ -247,44 +258,47 @@ void equation_reflect(const struct equation *e, const struct rgb *h, struct rgb 
 
 double *equation_weigh(const struct equation *e, const struct rgb *b)
 {
-    size_t spaces = (size_t)lit_count(e->gather->model);
+    int32_t spaces = lit_count(e->gather->model);
     double *weights = alloc_array((size_t)e->count, sizeof *weights);
-    double *all = alloc_array(spaces, sizeof *all);
-    int64_t *count = alloc_array(spaces, sizeof *count);
+    double *terms = alloc_array(2 * (size_t)e->count, sizeof *terms);
+    double *sums = alloc_array(2 * (size_t)spaces, sizeof *sums); /* light, leaves */
     for (int64_t i = 0; i < e->count; i++) {
-        all[equation_space(e, i)] += e->areas[i] * rgb_sum(b[i]);
-        count[equation_space(e, i)]++;
+        terms[2 * i] = e->areas[i] * rgb_sum(b[i]);
+        terms[2 * i + 1] = 1.0;
     }
+    total_groups(&e->totals, terms, e->space, e->count, spaces, 2, sums);
     for (int64_t i = 0; i < e->count; i++) {
-        int32_t s = equation_space(e, i);
-        double light = fmax(rgb_sum(b[i]), e->gather->lit[s].mean);
-        if (all[s] > 0.0)
-            weights[i] = e->areas[i] / all[s] + 1.0 / ((double)count[s] * light);
+        const double *sum = &sums[2 * e->space[i]];
+        double light = fmax(rgb_sum(b[i]), e->gather->lit[e->space[i]].mean);
+        if (sum[0] > 0.0)
+            weights[i] = e->areas[i] / sum[0] + 1.0 / (sum[1] * light);
     }
-    alloc_free(all);
-    alloc_free(count);
+    alloc_free(sums);
+    alloc_free(terms);
     return weights;
 }
 
 void equation_powers(const struct equation *e, const struct rgb *h,
-                         const struct rgb *b, double *absorbed, double *escaped)
+                     const struct rgb *b, double *absorbed, double *escaped)
 {
     const struct model *model = e->gather->model;
-    double leaving = 0.0, arriving = 0.0;
-    *absorbed = 0.0;
+    double sums[3], *terms = alloc_array(3 * (size_t)e->count, sizeof *terms);
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
-        uint32_t root = model->forest->patches[e->mesh->leaves[i]].id.root;
-        double bare = equation_bare_area(e, i);
+        uint32_t root = model->forest->patches[e->patch[i]].id.root;
+        double bare = equation_bare_area(e, i), *term = &terms[3 * i];
         if (scene_is_sky(model->scene, (int32_t)root))
             continue;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c], stays = 1.0 - m->transmittance.band[c];
-            *absorbed += bare * (stays - rho) * h[i].band[c];
-            arriving += bare * stays * h[i].band[c];
-            leaving += bare * (b[i].band[c] - m->emission.band[c]) +
+            term[0] += bare * (stays - rho) * h[i].band[c];
+            term[1] += bare * stays * h[i].band[c];
+            term[2] += bare * (b[i].band[c] - m->emission.band[c]) +
                        e->areas[i] * m->emission.band[c]; /* what is covered, is lost */
         }
     }
-    *escaped = leaving - arriving;
+    total_up(&e->totals, terms, e->count, 3, sums);
+    *absorbed = sums[0];
+    *escaped = sums[2] - sums[1];
+    alloc_free(terms);
 }

@@ -2,50 +2,51 @@
  *
  *     B = E + rho H,    H = source + W B,
  *
- * with a row of W for each. The rows of a rank are in the order of its leaves. Nothing
- * here is collective: a sum over rows, and the value of a row, is brought to all ranks by
- * the caller. */
+ * with a row of W for each. A rank has the rows that it has made, and of all vectors the
+ * values of their leaves, in the order of the rows; so `leaf` below is a row. What rows
+ * see, of all leaves, is brought to all ranks by the caller. Sums over leaves are in
+ * fixed point, the same however rows are dealt. */
 #ifndef RAD_BEYOND_GATHER_EQUATION_H
 #define RAD_BEYOND_GATHER_EQUATION_H
 
 #include "rad/beyond/gather/mesh.h"
 #include "rad/beyond/gather/rows.h"
+#include "rad/beyond/total.h"
 
 /* A leaf too near for some. */
 struct too_near {
-    int64_t leaf;     /* number */
+    int64_t leaf;     /* -1: of another rank */
     struct rgb shown; /* B as seen from afar over its mean, 1 */
 };
 
-/* Leaves have numbers, those of the mesh, the same on all ranks. */
 struct equation {
     struct final_gather *gather;    /* with the rows of this rank; borrowed */
     const struct gather_mesh *mesh; /* borrowed */
-    int64_t count;          /* leaves */
+    struct totals totals;   /* over leaves, a band at a time */
+    int64_t count;          /* leaves of this rank */
+    int32_t *patch;         /* [count] local number */
+    int64_t *number;        /* [count] in the mesh */
+    int32_t *space;         /* [count] */
     double *areas;          /* [count] square scene units */
     struct cover *covers;   /* [count] */
-    struct too_near *near;  /* [near_count], once numbered */
+    struct too_near *near;  /* [near_count] of all ranks, once numbered */
     int64_t near_count;
     int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
     struct rgb *radiosity;  /* by place: as rows see them */
     double *outside;        /* by place: shares of patches outside of things, 1 */
 };
 
-/* Borrows gather and mesh, which has leaves, and rays for each. */
+/* Borrows gather and mesh, which has leaves, and rays for each. `totals`: how ranks
+ * agree. */
 struct equation equation_start(struct final_gather *gather,
-                               const struct gather_mesh *mesh);
+                               const struct gather_mesh *mesh, struct totals totals);
 void equation_free(struct equation *e);
 
-/* The material of a leaf, its space, and its bare area, square scene units. */
+/* The material of a leaf, and its bare area, square scene units. */
 static inline const struct material *equation_material(const struct equation *e,
                                                        int64_t leaf)
 {
-    return forest_material(e->gather->model->forest, e->mesh->leaves[leaf]);
-}
-
-static inline int32_t equation_space(const struct equation *e, int64_t leaf)
-{
-    return node_space(e->gather->model, e->mesh->leaves[leaf]);
+    return forest_material(e->gather->model->forest, e->patch[leaf]);
 }
 
 static inline double equation_bare_area(const struct equation *e, int64_t leaf)
@@ -56,7 +57,7 @@ static inline double equation_bare_area(const struct equation *e, int64_t leaf)
 /* The place of a leaf in e->radiosity. */
 static inline int32_t equation_place(const struct equation *e, int64_t leaf)
 {
-    return e->gather->place[e->mesh->leaves[leaf]];
+    return e->gather->place[e->patch[leaf]];
 }
 
 /* The area of a leaf whose emission arrives: of a lamp the part outside of things, for
@@ -64,45 +65,48 @@ static inline int32_t equation_place(const struct equation *e, int64_t leaf)
  * lamp at the ceiling shines out of the room: nothing of its light is kept. */
 double equation_shining_area(const struct equation *e, int64_t leaf);
 
-/* Makes the row of a leaf of an equation, and counts its rays. */
-void equation_make_row(void *equation, int64_t leaf);
+/* Makes the row of a leaf of the mesh, and counts its rays. */
+void equation_make_row(void *equation, int64_t number);
 
 /* Numbers leaves too near, in the order of all. Pre: the items of gather->near are summed
  * over ranks. */
 void equation_number_near(struct equation *e);
 
-/* Finds the shares of patches outside of things. Pre: e->covers are of all rows. */
-void equation_find_outside(struct equation *e);
+/* Finds the shares of patches outside of things, by those of all leaves, `shares[k]` of
+ * the leaf at place[k], in the first band. */
+void equation_find_outside(struct equation *e, const int32_t *place,
+                           const struct rgb *shares);
 
-/* Makes e->radiosity the radiosities `b`, by leaf, and the means of these over inner
- * patches. */
-void equation_set(struct equation *e, const struct rgb *b);
+/* Makes e->radiosity the values of all leaves, values[k] at place[k], and the means of
+ * these over inner patches. */
+void equation_set(struct equation *e, const int32_t *place, const struct rgb *values);
 
-/* Makes e->radiosity what rows see of the radiosities `b`, by leaf: of leaves partly
- * inside of things the part outside, which receives all their light; of leaves too near
- * what is shown; of inner patches the mean. `lamps`: with emission. */
-void equation_show(struct equation *e, const struct rgb *b, bool lamps);
+/* Finds what rows see of the radiosities `b`: of leaves partly inside of things the part
+ * outside, which receives all their light; of leaves too near what is shown. `lamps`:
+ * with emission. Then equation_set() is to be called. */
+void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
+                   struct rgb *seen);
 
 /* Finds how bright far receivers see leaves too near, in three steps: all leaves are
  * shown by their means; rows add the light that they bring to leaves too near to `watts`,
- * [BANDS * near_count], in gather->near->unit_watts; sums over all rows set the
- * factors. */
-void equation_show_means(struct equation *e, const struct rgb *b);
+ * [BANDS * near_count], in gather->near->unit_watts; sums over all rows set the factors
+ * of own leaves. */
+void equation_show_means(struct equation *e, const struct rgb *b, struct rgb *seen);
 void equation_add_near(const struct equation *e, int64_t *watts);
 void equation_set_shown(struct equation *e, const int64_t *watts);
 
-/* H of each row, W/m^2, for what rows see; with the source if `lamps`. */
+/* H of leaves, W/m^2, for what rows see; with the source if `lamps`. */
 void equation_multiply(const struct equation *e, bool lamps, struct rgb *h);
 
 /* b = E + rho h. */
 void equation_reflect(const struct equation *e, const struct rgb *h, struct rgb *b);
 
-/* Returns weights of leaves with the radiosities `b`, [count], to be freed: in each space
- * all of `b` has the size 1 by area, and 1 by leaf. */
+/* Collective. Returns weights of leaves with the radiosities `b`, [count], to be freed:
+ * in each space all of `b` has the size 1 by area, and 1 by leaf. */
 double *equation_weigh(const struct equation *e, const struct rgb *b);
 
-/* The power absorbed and the power escaping, W in square scene units. */
+/* Collective. The power absorbed and the power escaping, W in square scene units. */
 void equation_powers(const struct equation *e, const struct rgb *h,
-                         const struct rgb *b, double *absorbed, double *escaped);
+                     const struct rgb *b, double *absorbed, double *escaped);
 
 #endif

@@ -9,6 +9,8 @@
 
 enum { SIZE = 60 };
 
+static const struct totals ALONE = {.terms = SIZE};
+
 /* x - scale[band] M x; rows of M sum to 1 at most. */
 struct system {
     double m[SIZE][SIZE];
@@ -88,7 +90,7 @@ static int steps_to(struct system *s, const struct rgb *b, const double *weights
     set_residual(s, b, x, r);
     double first = residual_of(s, b, weights, x);
     struct bicgstab_end end = {.part = part, .steps = most};
-    struct bicgstab done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    struct bicgstab done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     *left = done.residual / first;
     return done.steps;
 }
@@ -124,32 +126,32 @@ static void test_known(struct random *random, struct system *s, double bright)
     test_part(s, b, weights);
     set_residual(s, b, x, r);
     struct bicgstab_end end = {.residual = 1e-13, .steps = 1};
-    struct bicgstab done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    struct bicgstab done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     double own = residual_of(s, b, weights, x);
     tap_ok(done.steps == 1 && fabs(done.residual / own - 1.0) < 1e-9,
            "bright %g: a residual of %.2e after one step", bright, done.residual);
     end = (struct bicgstab_end){.residual = 1e-13, .part = 0.03, .steps = 200};
-    done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     double part = residual_of(s, b, weights, x) / own;
     /* A step or two are enough for that part, and leave more than the goal. */
     tap_ok(part <= 0.03 && part * own > 1e-13, "%.2g of it is left after %d steps more",
            part, done.steps);
     s->products = 0;
     end.part = 0.0;
-    done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     /* The residual is amplified by 1 / (1 - bright) at most. */
     tap_ok(worst_of(x, truth) <= 1e-12 / (1.0 - bright) && done.residual <= 1e-13,
            "solved after %d steps, off by %.1e", done.steps, worst_of(x, truth));
     tap_ok(s->products == 2 * done.steps, "two products a step: %d", s->products);
     double before = worst_of(x, truth);
     end.residual = 1e-12;
-    done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     tap_ok(done.steps == 0 && worst_of(x, truth) == before,
            "a band that is solved stays as it is");
     memset(r, 0, sizeof r);
     memset(x, 0, sizeof x);
     end.residual = 0.0;
-    done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    done = bicgstab_solve(apply, s, &ALONE, weights, SIZE, end, x, r);
     tap_ok(done.steps == 0 && done.residual == 0.0, "no light, no step");
 }
 
@@ -171,7 +173,7 @@ static void test_hopeless(void)
         weights[i] = 1.0;
     }
     struct bicgstab_end end = {.residual = 1e-9, .steps = 50};
-    struct bicgstab done = bicgstab_solve(zero, NULL, weights, SIZE, end, x, r);
+    struct bicgstab done = bicgstab_solve(zero, NULL, &ALONE, weights, SIZE, end, x, r);
     bool finite = true;
     for (int i = 0; i < SIZE; i++)
         finite = finite && isfinite(x[i].band[0]);

@@ -24,17 +24,21 @@ static double absorbed_part(struct scene *scene, double first, double *off)
     struct meshing meshing = {model, gather, &mesh, open, .patches_most = 0};
     meshing_begin(&meshing);
     meshing_end(&meshing);
-    struct equation e = equation_start(gather, &mesh);
-    for (int64_t i = 0; i < e.count; i++) {
+    struct totals alone = {.terms = BANDS * mesh.count};
+    struct equation e = equation_start(gather, &mesh, alone);
+    int32_t *place = alloc_array((size_t)mesh.count, sizeof *place);
+    struct rgb *b = alloc_array(2 * (size_t)mesh.count, sizeof *b), *h = b + mesh.count;
+    for (int64_t i = 0; i < mesh.count; i++) {
         equation_make_row(&e, i);
-        e.covers[i] = gather->rows[i].cover;
+        place[i] = equation_place(&e, i);
+        h[i].band[0] = (double)e.covers[i].outside;
     }
     equation_number_near(&e);
-    equation_find_outside(&e);
+    equation_find_outside(&e, place, h);
     struct light_balance balance = balance_start(&e, gather->counts.crossed);
-    struct rgb *b = alloc_array(2 * (size_t)e.count, sizeof *b), *h = b + e.count;
     for (int k = 0; k < REFLECTIONS; k++) {
-        equation_show(&e, b, true);
+        equation_show(&e, b, true, h);
+        equation_set(&e, place, h);
         equation_multiply(&e, true, h);
         balance_close(&balance, b, true, h);
         balance_spread(&balance, h);
@@ -46,6 +50,7 @@ static double absorbed_part(struct scene *scene, double first, double *off)
     for (int64_t i = 0; i < e.count; i++)
         *off = real_max(*off, real_max(b[i].band[1] - 1.0, 1.0 - b[i].band[1]));
     alloc_free(b);
+    alloc_free(place);
     balance_free(&balance);
     equation_free(&e);
     final_gather_destroy(gather);
