@@ -28,7 +28,11 @@ struct stint {
 
 static void list_items(struct stages *s)
 {
-    for (int64_t least = INT64_C(1) << 61; s->left < s->count; least /= 2)
+    int64_t most = 1; /* of the octave of the heaviest */
+    for (int64_t i = 0; i < s->count; i++)
+        while (s->work[i] >= 2 * most)
+            most *= 2;
+    for (int64_t least = most; s->left < s->count; least /= 2)
         for (int64_t i = 0; i < s->count; i++)
             if (s->work[i] >= least && s->work[i] < 2 * least)
                 s->items[s->left++] = (int32_t)i;
