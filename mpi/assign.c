@@ -59,7 +59,7 @@ void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     int *least = alloc_array(2 * (size_t)ranks, sizeof *least);
     for (int k = 2 * ranks - 1; k > 0; k--) /* a tree: of 2k and 2k + 1 the lighter */
-        least[k] = k >= ranks ? k - ranks : lighter(loads, least[2 * k], least[2 * k + 1]);
+        least[k] = k < ranks ? lighter(loads, least[2 * k], least[2 * k + 1]) : k - ranks;
     for (int32_t i = 0; i < count; i++) {
         int rank = owner[items[i].number] = least[1];
         loads[rank] += items[i].weight;
