@@ -10,7 +10,6 @@
 #include "compute.h"
 #include "geom/hash.h"
 #include "geom/lambert.h"
-#include "rad/beyond/gather/exact.h"
 #include "rad/beyond/gather/look.h"
 #include "rad/beyond/gather/row.h"
 #include "rad/beyond/gather/rows.h"
@@ -260,8 +259,8 @@ int main(int argc, char **argv)
             final_gather_create(&run.solver->model, MOST, NULL,
                                 lit_find(&run.solver->model));
         look_around(gather);
-        bool open = final_gather_root_is_open(gather, 0, true) &&
-                    final_gather_root_is_open(gather, 1, true);
+        bool open = view_is_open(gather->view, 0, true) &&
+                    view_is_open(gather->view, 1, true);
         struct place at[POINTS];
         double truth[POINTS];
         for (int p = 0; p < POINTS; p++) {

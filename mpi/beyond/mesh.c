@@ -17,7 +17,6 @@
 #include "geom/stop.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
-#include "rad/beyond/gather/exact.h"
 
 enum { ROUNDS = 6 };
 
@@ -60,7 +59,7 @@ static bool half_is_open(const struct solver *solver, struct final_gather *gathe
         for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;
              end++)
             open[end] = end % comm->size == comm->rank && !stop_is_asked() &&
-                        final_gather_root_is_open(gather, sorted[end].root, proof);
+                        view_is_open(gather->view, sorted[end].root, proof);
         comm_add(comm, open + begin, end - begin);
         for (int32_t i = begin; i < end; i++)
             blocked += open[i] ? 0.0 : sorted[i].area;

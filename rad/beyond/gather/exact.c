@@ -18,13 +18,6 @@
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/sample.h"
 
-/* A root has exact rows only if it faces at most this many roots for each ray. */
-enum { FACED_PER_RAY = 4 };
-
-/* A root is slender if the square of its radius is more than this times its area: its
- * points are far apart for its width, and mean factors would take too many of them. */
-static const double SLENDER = 64.0;
-
 /* A sender is taken as a whole in an exact row if B, times the sender's factor and the
  * number of rays, varies over the sender by less than this times the root of epsilon of
  * the mean: so errors of senders fall with this root, as those of the mesh do. */
@@ -36,91 +29,6 @@ enum { QUARTERINGS = 3 };
 /* An exact row whose sum is within CLOSED of 1 sees no way out. One within ALL_BUT may
  * see none: in an acute corner single points miss near faces. */
 static const double CLOSED = 1e-3, ALL_BUT = 0.1;
-
-/* --- the roots that a root faces --- */
-
-/* Adds the roots below a node that the root faces. False once there are too many. */
-static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
-{
-    struct gather_view *view = g->view;
-    struct end end = end_of(g->model, node);
-    if (!ends_may_face(root, &end))
-        return true;
-    if (end.cluster) {
-        bool few = true;
-        for (int k = 0; k < 4 && few && end.cluster->child[k] != NODE_NONE; k++)
-            few = view_node(g, root, end.cluster->child[k]);
-        return few;
-    }
-    if (view->count == FACED_PER_RAY * g->rays)
-        return false;
-    RESERVE(view->faced, &view->capacity, view->count + 1);
-    view->faced[view->count++] = node;
-    return true;
-}
-
-/* True if a root below the node overlaps this one in its plane: one hides part of the
- * other. */
-static bool has_overlap(struct final_gather *g, const struct end *root, int32_t node)
-{
-    struct end end = end_of(g->model, node);
-    const struct facet *s = &root->facet, *t = &end.facet;
-    bool found = false;
-    g->view->counts.node_tests++;
-    if (node == root->node || !ends_meet(root, &end).near)
-        return false;
-    if (!end.cluster)
-        return triangle_is_in(&t->triangle, &t->plane, &s->plane) &&
-               triangles_overlap(&s->triangle, &t->triangle, &s->plane);
-    for (int k = 0; k < 4 && !found && end.cluster->child[k] != NODE_NONE; k++)
-        found = has_overlap(g, root, end.cluster->child[k]);
-    return found;
-}
-
-static bool is_overlapped(struct final_gather *g, int32_t root)
-{
-    uint8_t *known = &g->view->overlapped[root];
-    struct end end = end_of(g->model, root);
-    if (*known == 0)
-        *known = has_overlap(g, &end, NODE_TOP) ? 2 : 1;
-    return *known == 2;
-}
-
-/* Lists the roots that a root faces. True if these are few, and nothing hides any as far
- * as segments tell; if `proof`, as proofs tell, too. Segments find most blockers. */
-static bool is_open(struct final_gather *g, int32_t number, bool proof)
-{
-    struct end root = end_of(g->model, number);
-    const struct octree *octree = g->model->octree;
-    struct gather_view *view = g->view;
-    struct vec3 middle = triangle_centroid(&root.facet.triangle);
-    int32_t guess = -1;
-    view->count = 0;
-    bool slender = root.radius * root.radius > SLENDER * root.area;
-    bool open = !slender && !g->aims->panes && view_node(g, &root, NODE_TOP);
-    for (int64_t i = 0; i < view->count && open; i++) {
-        struct facet other = facet_make(g->model->forest, view->faced[i]);
-        const int32_t own[2] = {root.facet.input, other.input};
-        struct vec3 there = triangle_centroid(&other.triangle);
-        open = !(point_kernel(middle, root.facet.plane.normal, there,
-                                 other.plane.normal) > 0.0) ||
-               !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
-    }
-    for (int64_t i = 0; i < view->count && open && proof; i++) {
-        struct facet other = facet_make(g->model->forest, view->faced[i]);
-        open = facets_are_open(&root.facet, &other, octree, &view->counts) &&
-               !is_overlapped(g, view->faced[i]);
-    }
-    return open;
-}
-
-static const struct gather_view *view_of(struct final_gather *g, int32_t root)
-{
-    if (g->view->root != root)
-        g->view->open = is_open(g, root, true);
-    g->view->root = root;
-    return g->view;
-}
 
 /* The square of the size of a triangle over the distance to another. */
 static double nearness(const struct triangle *to, const struct triangle *triangle)
@@ -277,23 +185,13 @@ static bool close_row(struct receiver *r)
     return true;
 }
 
-/* --- public --- */
-
-bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool proof)
-{
-    if (proof)
-        return view_of(gather, root)->open;
-    gather->view->root = -1;
-    return is_open(gather, root, false);
-}
-
 bool receiver_add_exact(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     uint32_t root = forest->patches[r->row->leaf].id.root;
-    const struct gather_view *view = view_of(g, (int32_t)root);
-    if (!view->open)
+    const struct gather_view *view = g->view;
+    if (!view_is_open(g->view, (int32_t)root, true))
         return false;
     for (int turn = 0; turn < 2; turn++) {
         double off = fabs(sum_of_row(g->sums) - 1.0);

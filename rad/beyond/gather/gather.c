@@ -10,6 +10,10 @@
  * the leaf's area. (pi .1 = 1/3: see path_ends().) */
 static const double NEAR = 0.1;
 
+/* A root has exact rows only if it faces at most this many roots for each ray, and light
+ * crosses no panes. */
+enum { FACED_PER_RAY = 4 };
+
 /* Rays of a leaf halve at 2, 8, 32, ... times MANY leaves; fewest rays of a leaf. */
 enum { MANY = 25000, FEWEST = 4 };
 
@@ -88,13 +92,12 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->rays_asked = rays;
     gather->rays = rays_for(rays, forest_count(forest).leaves);
     gather->lit = lit;
-    gather->view = alloc_array(1, sizeof *gather->view);
-    gather->view->root = -1;
-    gather->view->overlapped = alloc_array((size_t)forest->root_count, 1);
     gather->aims = alloc_array(1, sizeof *gather->aims);
     gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
     gather->aims->lamps = lamps_create(model, lit);
     gather->aims->panes = panes_create(model->scene);
+    gather->view =
+        view_create(model, gather->aims->panes ? -1 : FACED_PER_RAY * gather->rays);
     final_gather_renew(gather);
     return gather;
 }
@@ -150,9 +153,7 @@ void final_gather_destroy(struct final_gather *gather)
         return;
     drop_patches(gather);
     aims_destroy(gather->aims);
-    alloc_free(gather->view->faced);
-    alloc_free(gather->view->overlapped);
-    alloc_free(gather->view);
+    view_destroy(gather->view);
     alloc_free(gather->lit);
     alloc_free(gather);
 }

@@ -11,6 +11,7 @@
 #include "rad/beyond/gather/cuts.h"
 #include "rad/beyond/gather/lit.h"
 #include "rad/beyond/gather/slope.h"
+#include "rad/beyond/gather/view.h"
 #include "rad/beyond/panes.h"
 
 /* A term of the row at hand, while it is summed. */
@@ -71,18 +72,6 @@ struct gather_counts {
                                front in view, and exact rows not summing to 1 */
     int64_t exact;          /* rows made without rays */
     int64_t crossed;        /* terms, and segments seen, from one space to another */
-};
-
-/* A root and the roots that it faces. */
-struct gather_view {
-    int32_t root;      /* -1: none yet */
-    bool open;         /* proved: nothing stands between the root and any of `faced` */
-    int32_t *faced;    /* [count], roots */
-    int64_t count, capacity;
-    uint8_t *overlapped; /* [roots] 2: by another root in the plane; 1: by none; 0:
-                            unknown */
-    struct octree_counts counts; /* of all proofs, made by each rank with a leaf of the
-                                    root */
 };
 
 /* A segment from a receiver to a sender. */

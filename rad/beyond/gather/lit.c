@@ -1,9 +1,9 @@
 /* Means of light over spaces, and what is a lamp there.
  *
  * All emitters are lamps if they are LAMP times as bright as the mean of all surfaces. If
- * not, a lamp emits more than LAMP times this mean: where all surfaces are as bright, as in
- * a furnace, there is no lamp. Where little is reflected, BRIGHT times the mean reflected
- * light is enough; a bright patch reflects more than this. */
+ * not, a lamp emits more than LAMP times this mean: where all surfaces are as bright, as
+ * in a furnace, there is no lamp. Where little is reflected, BRIGHT times the mean
+ * reflected light is enough; a bright patch reflects more than this. */
 #include "rad/beyond/gather/lit.h"
 
 #include <math.h>

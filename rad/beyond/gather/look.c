@@ -69,7 +69,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         receiver_fire(&r); /* aims at bright patches, too */
         for (int c = 0; c < BANDS; c++) {
             double part = rho->band[c], square = 0.25 * part * part;
-            look.reflected[k][c] = (float)(part * (row.straight.band[c] + sums.h.band[c]));
+            look.reflected[k][c] =
+                (float)(part * (row.straight.band[c] + sums.h.band[c]));
             variance += square * row.chance[c];
             by_segments += square * row.of_segments[c];
         }

@@ -202,7 +202,7 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
 static void look_through(struct receiver *r, const struct point *point, struct vec3 x,
                          struct rgb weight, uint64_t seed)
 {
-    struct aimed pane;
+    struct sender_point pane;
     if (!r->gather->aims->panes ||
         !receiver_choose_beside(r, r->gather->aims->window_cuts, point->at,
                                 point->normal, point->patch, seed, &pane))

@@ -34,7 +34,7 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
 
 bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
                             struct vec3 normal, int32_t patch, uint64_t seed,
-                            struct aimed *aimed)
+                            struct sender_point *target)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
@@ -55,7 +55,7 @@ bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x
         y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
         if (!(point_kernel(x, normal, y, facing) > 0.0))
             continue;
-        *aimed = (struct aimed){sender.patch, y, factor * sender.share};
+        *target = (struct sender_point){sender.patch, y, factor * sender.share};
         return blocker_of(r, x, input, y, sender.patch) < 0 &&
                (!g->aims->panes ||
                 !receiver_puts_aside(r, pane_walk_to(point_above(x, normal), y),
@@ -69,7 +69,7 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
 {
     struct final_gather *g = r->gather;
     struct rgb light = *weight;
-    struct aimed lamp;
+    struct sender_point lamp;
     if (!receiver_choose_beside(r, g->aims->lamp_cuts, x, normal, patch, seed, &lamp))
         return;
     if (g->aims->panes)

@@ -9,7 +9,7 @@
 int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root);
 
 /* A point of a sender. */
-struct aimed {
+struct sender_point {
     int32_t root;
     struct vec3 at;
     double share; /* form factor of the sender over the probability of its choice, 1 */
@@ -20,7 +20,7 @@ struct aimed {
  * a pane on the way. */
 bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
                             struct vec3 normal, int32_t patch, uint64_t seed,
-                            struct aimed *aimed);
+                            struct sender_point *target);
 
 /* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
