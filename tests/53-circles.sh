@@ -1,6 +1,7 @@
 # Circles of objects: an object points at another if it uses a symbol that the other
 # defines, as nm sees them, over all folders. Objects that reach each other stand in a
-# circle, and none may; nor may files of a folder that include each other.
+# circle, and none may; nor may files of a folder that include each other. A header of
+# beyond/ declares the functions of its own .c alone.
 
 . tests/tap.sh
 
@@ -72,6 +73,23 @@ check "no object stands in a circle" [ ! -s "$work/circles" ]
 includes | circles >"$work/circles"
 sed 's/^/# /' "$work/circles"
 check "no file of a folder includes itself by way of others" [ ! -s "$work/circles" ]
+
+# strangers HEADER...: the functions that these declare and the .c of their name has not.
+strangers() {
+    for header in "$@"; do
+        sed -nE '/^(static|typedef|#|[^a-z])/d; s/^([a-z].*[ *])([a-z_0-9]+)\(.*/\2/p' \
+            "$header" | while read -r name; do
+            grep -qE "^${header%.h}: .* [TDR] _*$name\$" "$work/symbols" ||
+                echo "# $header declares $name()"
+        done
+    done
+}
+
+strangers $(find rad/beyond mpi/beyond -name '*.h') | tee "$work/strangers"
+check "headers of beyond/ declare functions of their own .c" [ ! -s "$work/strangers" ]
+echo 'void circles_stranger(void);' >"$work/planted.h"
+check "a function that is not there is found" \
+    [ "$(strangers "$work/planted.h" | wc -l)" -eq 1 ]
 
 # The test can fail: a circle of three, two of which reach a fourth.
 printf '%s\n' 'a: U of_b' 'b: U of_c' 'c: U of_a' 'c: U of_d' 'b: U of_d' \
