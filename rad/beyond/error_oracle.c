@@ -73,8 +73,8 @@ static double spread_of(const struct model *model, const struct link *link, int3
     return link_area(link) * (link_has_cluster(link) ? 2.0 * off : 4.0 * (most - least));
 }
 
-/* Part of the spread over a node left within its children: a cluster's are no quarters of
- * a plane, over which light varies smoothly. */
+/* Part of the spread over a node left within its children: half where light is linear
+ * over a plane; a cluster's are no quarters of one. */
 static const double LEFT_OF_PATCHES = 0.5, LEFT_OF_CLUSTERS = 2.0;
 
 /* The error caused by one side: the spread of received light within its children, and the
