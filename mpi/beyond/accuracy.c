@@ -12,7 +12,7 @@
  * The gather estimates the two parts (rad/beyond/gather/claim.c). Where E^2 exceeds the
  * sum of their squares by more than chance, the mesh has the surplus. If the claim is
  * above the goal, the next round brings E to AIM of it, which leaves room for the
- * deviation, with both parts alike unless one is small already: noise falls like N^-0.6
+ * deviation, with both parts alike unless one is small already: noise falls like N^-0.5
  * and costs N, the mesh's part falls like the third root of epsilon, and leaves grow like
  * the square root of 1 / epsilon, so both cost about as much. The links go on from where
  * they are, from their own solution: a run is the same whether it is resumed before the
