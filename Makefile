@@ -30,6 +30,7 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
+#   make oracle          docs/oracle.md: who gets how many digits of what is right
 #   make panel           every kind of scene in small, against its truth, a line each;
 #                        with BEFORE=commit beside what that made; SCENES='cornell door'
 #   make prove           long tests: `make check` on more ranks and by more compilers;
@@ -259,7 +260,7 @@ stability: $(PHR) $(JUDGES:%=$(BUILD)/%)
 
 docs:
 	@echo "All pages take three hours and a half on two cores."
-	@for page in chart front growth scaling pages numbers course; do \
+	@for page in chart front growth scaling pages numbers oracle course; do \
 	    echo "$$(date +%H:%M) make $$page"; $(MAKE) $$page || exit 1; done
 
 # The programs of docs/course/.
@@ -285,6 +286,10 @@ exercise: $(BUILD)/libphr.a
 film: $(PHR)
 	MPIEXEC="$(MPIEXEC)" FILM=build/film sh tools/film.sh
 	[ ! -e build/film/film.gif ] || cp build/film/film.gif docs/film.gif
+
+# Two minutes on two cores.
+oracle: $(PHR) build/viewfactors build/score build/oracle/hemicube
+	sh docs/oracle/oracle.sh
 
 # About five minutes on two cores.
 answers: $(PHR) pathtracer build/room build/course/leaves
@@ -378,6 +383,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
-    pages ablation numbers stability docs course exercise film answers \
+    pages ablation numbers stability docs course exercise film answers oracle \
     panel check-long prove corpus cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE
