@@ -75,15 +75,14 @@ static bool save_links(struct run *run)
 static bool is_unfinished(const struct run *run)
 {
     const struct vote *vote = &run->vote;
-    if (run->solver->turn.stop || vote->diverged)
+    if (run->solver->turn.stop || run->haste || vote->diverged)
         return false;
     return !vote->converged &&
            run->solver->turn.iteration < run->options.criterion.max_iterations;
 }
 
 /* True if there is another iteration over the same links. A signal ends them, unless
- * there is to be a checkpoint: that is of a whole pass, and without it the refinement
- * would be lost. */
+ * there is to be a checkpoint: that is of a whole pass. */
 static bool iterates(struct run *run)
 {
     report_solving(run);
@@ -96,7 +95,8 @@ static bool is_due(const struct run *run)
     const struct options *options = &run->options;
     const struct vote *vote = &run->vote;
     const struct turn *turn = &run->solver->turn;
-    if (!options->checkpoint || run->half_linked || vote->unfinished || vote->diverged)
+    if (!options->checkpoint || run->half_linked || run->haste || vote->unfinished ||
+        vote->diverged)
         return false;
     return turn->pass % options->every == 0 || turn->stop || vote->converged ||
            turn->iteration >= options->criterion.max_iterations;
@@ -114,21 +114,23 @@ static bool end_pass(struct run *run, int64_t first_level)
     return !is_due(run) || stored_save(run, STORE_CHECKPOINT, run->options.checkpoint);
 }
 
-/* Step 9: what leaves really see. */
+/* For a line at the end. */
+static const char OF_LINKS[] = "the light is that of the links there were";
+
+/* Step 9: what leaves really see. A run that was asked to stop ends with the light of the
+ * links. */
 static enum finish finish_light(struct run *run)
 {
-    if (run->solver->turn.stop) {
-        run_stopped(run, run->solver->turn.stop);
-        return FINISH_STOPPED;
-    }
+    if (run->haste || run_hastens(run, OF_LINKS))
+        return FINISH_DONE;
     if (!stored_complete(run))
         return FINISH_STOPPED;
     if (!run->solver->steps.finish)
         return FINISH_DONE;
     enum finish finish = run->solver->steps.finish(run->solver, &run->vote);
     report_round(run);
-    if (finish == FINISH_STOPPED)
-        run_goes_on(run);
+    if (finish == FINISH_STOPPED && run_hastens(run, OF_LINKS))
+        return FINISH_DONE;
     return finish;
 }
 
@@ -152,7 +154,7 @@ bool compute_light(struct run *run)
         while (is_unfinished(run)) {
             int64_t first_level = solver->account.ledger.level_count;
             if (!solver_refine(solver))          /* 4: Algorithm 1 */
-                break;
+                run_hastens(run, OF_LINKS);
             progress_begin(solver->progress, "solving", -1, 0);
             run->first_bound = HUGE_VAL;
             do {

@@ -19,6 +19,9 @@
 
 #include <signal.h>
 #include <stddef.h>
+#ifdef HAVE_SIGACTION
+#include <unistd.h>
+#endif
 
 #include "geom/stop.h"
 
@@ -37,6 +40,9 @@ static const struct {
 #endif
 #ifdef SIGUSR1
     {SIGUSR1, "SIGUSR1"},
+#endif
+#ifdef SIGALRM
+    {SIGALRM, "--time"},
 #endif
 };
 enum { STOP_COUNT = sizeof STOPS / sizeof STOPS[0] };
@@ -112,7 +118,16 @@ void signals_end_calls(bool ends)
 
 int signals_seen(void)
 {
-    return (int)seen;
+    return stop_is_asked() ? (int)seen : 0;
+}
+
+void signals_after(int seconds)
+{
+#ifdef HAVE_SIGACTION
+    alarm((unsigned)seconds);
+#else
+    (void)seconds;
+#endif
 }
 
 const char *signals_name(int number)

@@ -1,4 +1,4 @@
-/* Being asked to stop: SIGTERM, SIGINT, SIGHUP, SIGXCPU and SIGUSR1. */
+/* Being asked to stop: SIGTERM, SIGINT, SIGHUP, SIGXCPU, SIGUSR1 and SIGALRM. */
 #ifndef GEOM_SIGNALS_H
 #define GEOM_SIGNALS_H
 
@@ -14,10 +14,13 @@ void signals_catch(void);
  * first not. Pre: no MPI is called while signals end calls. */
 void signals_end_calls(bool ends);
 
-/* The signal received by this rank, 0: none. */
+/* The signal received by this rank, 0: none, or it is heeded (geom/stop.h). */
 int signals_seen(void);
 
-/* "SIGTERM" and so on. */
+/* Sends SIGALRM, one of these signals, after this time, at least a second. */
+void signals_after(int seconds);
+
+/* "SIGTERM" and so on; "--time" for SIGALRM. */
 const char *signals_name(int number);
 
 #endif

@@ -12,6 +12,7 @@
 #include "geom/stop.h"
 
 static bool (*is_asked)(void);
+static bool heeded;
 
 void stop_when(bool (*asked)(void))
 {
@@ -19,6 +20,16 @@ void stop_when(bool (*asked)(void))
 }
 
 bool stop_is_asked(void)
+{
+    return !heeded && stop_was_asked();
+}
+
+void stop_heed(void)
+{
+    heeded = true;
+}
+
+bool stop_was_asked(void)
 {
     return is_asked && is_asked();
 }

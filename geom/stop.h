@@ -15,6 +15,13 @@ void stop_when(bool (*asked)(void));
  * no other use. */
 bool stop_is_asked(void);
 
+/* Takes the question for heeded: stop_is_asked() is false from here on, and a run shows
+ * what it has. */
+void stop_heed(void);
+
+/* True if the program has been asked to stop, heeded or not: nothing is waited for. */
+bool stop_was_asked(void);
+
 /* True if nobody asks the program to stop. Else fills `error`, as error_set() does. */
 bool stop_check(struct error *error);
 

@@ -291,7 +291,8 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
         /* LoadBalance(prolificInteractions) */
         load_balance(solver, prolific, level);
         /* for all interaction in prolificInteractions do */
-        for (int64_t i = 0; goes_on(solver, prolific, i); i++) {
+        int64_t i = 0;
+        for (; goes_on(solver, prolific, i); i++) {
             /* Subdivide interaction and its associated patches */
             const struct link *link = &prolific->items[i];
             int32_t side = model->method.side_to_split(model, link);
@@ -308,17 +309,19 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
                     keep_link(solver, &children[k], true);
             }
         }
+        for (; i < prolific->count; i++) /* after a signal */
+            link_list_append(&next, prolific->items[i]);
         /* prolificInteractions <- newInteractions */
         end_level(solver, prolific, &next, level);
     }
 }
 
-/* Collective. The links left unsplit by the memory limit join the others, and divide no
- * patch. At the end all ranks agree on whether a signal has come meanwhile. */
+/* Collective. The links left unsplit by the memory limit or a signal join the others, and
+ * divide no patch. At the end all ranks agree on whether a signal has come meanwhile. */
 static void keep_unsplit(struct solver *solver, struct link_list *prolific,
                          struct level *level)
 {
-    for (int64_t i = 0; goes_on(solver, prolific, i); i++)
+    for (int64_t i = 0; i < prolific->count; i++)
         keep_link(solver, &prolific->items[i], false);
     exchange_loads(solver, prolific, level);
 }
@@ -334,13 +337,12 @@ bool solver_refine(struct solver *solver)
     memory->reached = 0;
     level.loads = alloc_array((size_t)solver->comm->size, sizeof *level.loads);
     refine(solver, &prolific, &level);
-    if (memory->reached && !solver->turn.stop)
+    if (memory->reached || solver->turn.stop)
         keep_unsplit(solver, &prolific, &level);
     alloc_free(level.loads);
     link_list_free(&prolific);
     share_splits(solver);
-    if (!solver->turn.stop)
-        solver_settle_links(solver);
+    solver_settle_links(solver);
     solver->turn.pass -= solver->turn.stop != 0;
     return !solver->turn.stop;
 }

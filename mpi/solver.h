@@ -172,8 +172,8 @@ void solver_settle_links(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches
  * were split. Refinement ends at the memory limit, and does not begin again as long as
- * the limit is the same. False if a signal (solver->turn.stop) has ended the step, which
- * then counts as not begun, without light over the links there are. */
+ * the limit is the same. False if a signal (solver->turn.stop) has ended the step: then
+ * the pass is not counted, but light can be found over the links there are. */
 bool solver_refine(struct solver *solver);
 
 /* Collective. This rank learns the radiosities of the ends of links and, if `deep`,

@@ -15,7 +15,7 @@ $PHR $scene $view --quiet -o "$work/a.ppm" -o "$work/a.pfm" -o "$work/a.ply"
 # bounded COMMAND...: within 20 seconds, which are the limit of a hang.
 bounded() { timeout -s KILL 20 "$@"; }
 
-# waits RANKS: it has no reader, and ends soon after one SIGTERM, with one line. (A
+# waits RANKS: it has no reader, and ends soon after one SIGTERM, and says so. (A
 # launcher that was sent a signal may end with 0 whatever its ranks end with.)
 waits() {
     start "$1" $scene $view -o "$pipe"
@@ -23,7 +23,7 @@ waits() {
     sleep 0.5
     kill -TERM "$launched"
     finish
-    [ "$status" != hang ] && [ "$(tail -n 1 "$work/err")" = "phr: stopped by SIGTERM" ]
+    [ "$status" != hang ] && tail -n 1 "$work/err" | grep -q "^phr: stopped by SIGTERM"
 }
 
 # sends RANKS FORMAT ARGUMENTS...: an output goes to stdout, alone.

@@ -156,49 +156,88 @@ static float *part_errors(float *picture, const struct camera *camera)
     return errors;
 }
 
-/* Collective. Returns the picture of a camera on rank 0, NULL on the others. */
+/* Collective. Returns the picture of a camera on rank 0, NULL on the others; in haste by
+ * one ray a pixel. */
 static float *make_picture(struct run *run, const struct renderer *renderer,
                            const struct camera *camera)
 {
     const struct comm *comm = &run->comm;
     progress_begin(&run->progress.progress, "rendering", -1, 0);
-    float *scanlines = render_scanlines(renderer, camera, run->options.samples,
-                                        comm->rank, comm->size, &run->progress.progress);
+    float *scanlines =
+        render_scanlines(renderer, camera, run->haste ? 1 : run->options.samples,
+                         comm->rank, comm->size, &run->progress.progress);
     size_t floats = (renderer->error ? 2u : 1u) * BANDS * (size_t)camera->width;
     return picture_gather(comm, scanlines, floats, camera->height);
 }
 
-/* Collective. Renders and writes the pictures of all views. False on an error or a
- * signal, on all ranks. */
-static bool show_views(struct run *run, const struct renderer *renderer)
+/* Where a signal has come to pictures. */
+struct halt {
+    int view;       /* to go on with */
+    float *picture; /* the pixels done of it, on rank 0, others below 0; or NULL */
+    float *errors;  /* theirs, or NULL */
+};
+
+static void halt_free(struct halt *halt)
 {
+    alloc_free(halt->picture);
+    alloc_free(halt->errors);
+    halt->picture = halt->errors = NULL;
+}
+
+/* Puts the pixels done before a signal into a picture made in haste; frees them. */
+static void keep_done(struct halt *halt, float *picture, float *errors,
+                      const struct camera *camera)
+{
+    size_t floats = BANDS * (size_t)camera->width * (size_t)camera->height;
+    for (size_t i = 0; halt->picture && i < floats; i++)
+        if (halt->picture[i] >= 0.0f) {
+            picture[i] = halt->picture[i];
+            if (halt->errors && errors)
+                errors[i] = halt->errors[i];
+        }
+    halt_free(halt);
+}
+
+/* Collective. Renders and writes the pictures of the views from halt->view on. False on
+ * an error, and after a signal: `*halt` is the place to go on, in haste. */
+static bool show_views(struct run *run, const struct renderer *renderer,
+                       struct halt *halt)
+{
+    static const char DONE[] = "pixels not done have the light of the mesh";
     struct account *account = &run->solver->account;
-    run->exposures = alloc_array((size_t)run_camera_count(run), sizeof *run->exposures);
-    for (int view = 0; view < run_camera_count(run); view++) {
+    for (; halt->view < run_camera_count(run); halt->view++) {
+        struct camera *camera = &run->cameras[halt->view];
         account_begin(account, PHASE_RENDER);
         struct renderer own = *renderer;
-        if (!wants_errors(&run->options, view))
+        if (!wants_errors(&run->options, halt->view))
             own.error = NULL;
-        float *picture = make_picture(run, &own, &run->cameras[view]);
-        float *errors = picture && own.error ? part_errors(picture, &run->cameras[view])
-                                             : NULL;
-        bool good = run_goes_on(run) && show_overlay(run, &run->cameras[view], picture);
+        float *picture = make_picture(run, &own, camera);
+        float *errors = picture && own.error ? part_errors(picture, camera) : NULL;
+        bool halts = !run->haste && run_hastens(run, DONE);
+        if (picture && !halts)
+            keep_done(halt, picture, errors, camera);
+        bool good = !halts && show_overlay(run, camera, picture);
         account_end(account, PHASE_RENDER);
         account_begin(account, PHASE_WRITE);
         if (good && run->comm.rank == 0)
-            write_pictures(run, view, picture, errors);
-        alloc_free(errors);
-        alloc_free(picture);
+            write_pictures(run, halt->view, picture, errors);
+        if (halts) {
+            halt->picture = picture;
+            halt->errors = errors;
+        } else {
+            alloc_free(errors);
+            alloc_free(picture);
+        }
         account_end(account, PHASE_WRITE);
-        if (!run_agree(run))
+        if (!run_agree(run) || halts)
             return false;
     }
     return true;
 }
 
-/* Collective. Prepares the light of pictures, and shows all views. Their rays are not
+/* Collective. Prepares the light of pictures, and shows the views left. Their rays are not
  * counted among the solution's. */
-static bool show_pictures(struct run *run)
+static bool show_pictures(struct run *run, struct halt *halt)
 {
     struct model *model = &run->solver->model;
     struct octree_counts counts = model->counts;
@@ -212,12 +251,13 @@ static bool show_pictures(struct run *run)
     struct irradiance irradiance;
     if (white)
         irradiance_make(run, &irradiance);
-    bool gathers = answer && (answer->straight || run->options.pixels) &&
+    bool pixels = run->options.pixels && !run->haste;
+    bool gathers = answer && (answer->straight || pixels) && !run->haste &&
                    !run->options.flat && !colours;
     struct shading *shading = NULL;
     if (colours)
         shading = show_shading(run, colours);
-    else if (!run->options.pixels)
+    else if (!pixels)
         shading = shade_leaves(run, white ? &irradiance : NULL, gathers);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? answer->gather : NULL);
@@ -226,12 +266,12 @@ static bool show_pictures(struct run *run)
     renderer.error = white ? irradiance.error : answer ? answer->error : NULL;
     if (white && reflected > 0.0)
         renderer.brighter = forest_mean_reflected(&irradiance.forest) / reflected;
-    if (run->options.pixels && renderer.rays < run->options.pixel_rays)
+    if (pixels && renderer.rays < run->options.pixel_rays)
         renderer.rays = run->options.pixel_rays;
     if (gathers)
         answer->gather->counts = (struct gather_counts){.rays = 0};
     account_end(&run->solver->account, PHASE_RENDER);
-    bool good = show_views(run, &renderer);
+    bool good = show_views(run, &renderer, halt);
     if (gathers) {
         answer->counts.pixels =
             answer->gather->counts.rays + answer->gather->counts.segments;
@@ -246,7 +286,8 @@ static bool show_pictures(struct run *run)
     return good;
 }
 
-/* Collective. Rank 0 alone shades and writes. */
+/* Collective. Rank 0 alone shades and writes; anew in haste if a signal has come before
+ * it writes. */
 static bool show_meshes(struct run *run)
 {
     account_begin(&run->solver->account, PHASE_WRITE);
@@ -255,13 +296,14 @@ static bool show_meshes(struct run *run)
     struct shading *shading =
         run->comm.rank == 0 ? shade_leaves(run, NULL, false) : NULL;
     struct rgb *at = shading ? irradiance_at_vertices(&irradiance, shading) : NULL;
-    if (run_goes_on(run) && shading)
+    bool halts = !run->haste && run_hastens(run, "the light is whole");
+    if (!halts && shading)
         write_meshes(run, shading, &irradiance, at);
     alloc_free(at);
     shading_destroy(shading);
     irradiance_free(&irradiance);
     account_end(&run->solver->account, PHASE_WRITE);
-    return run_agree(run);
+    return halts ? show_meshes(run) : run_agree(run);
 }
 
 /* Sets radiosities of leaves below 0, which conjugate residuals may leave in the dark
@@ -289,6 +331,14 @@ bool results_show(struct run *run)
         meshes = meshes || format_is_mesh(options->outputs[i].format);
     if (pictures || meshes)
         beyond_free_vectors(run->solver); /* pictures and meshes take as much */
-    return (!meshes || show_meshes(run)) && (!pictures || show_pictures(run)) &&
-           table_print_points(run) && table_write_report(run);
+    struct halt halt = {.view = 0};
+    bool good = !meshes || show_meshes(run), hurried = run->haste != 0;
+    if (pictures)
+        run->exposures =
+            alloc_array((size_t)run_camera_count(run), sizeof *run->exposures);
+    if (good && pictures)
+        good = show_pictures(run, &halt) ||
+               (run->haste && !hurried && show_pictures(run, &halt));
+    halt_free(&halt);
+    return good && table_print_points(run) && table_write_report(run);
 }

@@ -67,6 +67,8 @@ bool run_start(struct run *run, int *argc, char ***argv)
 bool run_parse(struct run *run, int argc, char **argv)
 {
     bool parsed = options_parse(&run->options, argc, argv, &run->error);
+    if (parsed && run->options.seconds > 0)
+        signals_after(run->options.seconds);
     if (run->comm.rank == 0 && !run->options.quiet)
         progress_view_open(&run->progress, comm_seconds);
     return parsed;
@@ -107,6 +109,8 @@ void run_free(struct run *run)
 
 int run_end(struct run *run)
 {
+    if (run->haste && run->error.code == EXIT_DONE)
+        run_stopped(run, run->haste);
     print_errors(run);
     run_free(run);
     comm_stop(&run->comm);
@@ -141,8 +145,25 @@ void run_set_note(const struct run *run)
 bool run_stopped(struct run *run, int signal)
 {
     const char *path = run->kept;
-    return error_set(&run->error, EXIT_FAILED, "stopped by %s%s%s", signals_name(signal),
-                     path ? "; go on with --resume " : "", path ? path : "");
+    return error_set(&run->error, EXIT_FAILED, "stopped by %s%s%s%s%s",
+                     signals_name(signal), run->shown ? ": " : "",
+                     run->shown ? run->shown : "", path ? "; go on with --resume " : "",
+                     path ? path : "");
+}
+
+bool run_hastens(struct run *run, const char *shown)
+{
+    int64_t own = signals_seen(), most = 0;
+    int64_t *each = comm_gather_each(&run->comm, &own, sizeof own);
+    for (int r = 0; r < run->comm.size; r++)
+        most = each[r] > most ? each[r] : most;
+    alloc_free(each);
+    if (most > 0) {
+        stop_heed();
+        run->haste = (int)most;
+        run->shown = shown;
+    }
+    return run->haste != 0;
 }
 
 bool run_agree(struct run *run)

@@ -32,6 +32,9 @@ struct run {
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
     const char *kept;              /* path of the last checkpoint made or read, or NULL */
+    int haste;                     /* the signal after which the run shows what there is;
+                                      0: none */
+    const char *shown;             /* what it shows then, for a line at its end; or NULL */
     struct error error;            /* ends the run */
     double start;                  /* comm_seconds() at the beginning */
     double first_bound;            /* vote.remaining of the first iteration of a pass */
@@ -76,6 +79,11 @@ void run_set_note(const struct run *run);
 
 /* Sets the error of a run stopped by a signal. Returns false. */
 bool run_stopped(struct run *run, int signal);
+
+/* Collective. If a rank was asked to stop, the run hastens from here on, and no signal
+ * stops its loops: it shows what there is. Returns whether it does. `shown`: as in struct
+ * run. */
+bool run_hastens(struct run *run, const char *shown);
 
 /* Collective. Gives all ranks the error of one of them, if any has one; false then. On a
  * rank asked to stop, the signal is the error. */

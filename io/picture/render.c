@@ -509,6 +509,8 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
     size_t length = (renderer->error ? 2u : 1u) * BANDS * (size_t)camera->width;
     int scanlines = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)scanlines * length, sizeof *rgb);
+    for (size_t i = 0; i < (size_t)scanlines * length; i++)
+        rgb[i] = -1.0f;
     struct strip strip = {
         .renderer = renderer, .scene = scene, .camera = camera,
         .basis = camera_basis_of(camera), .eye = scene_from_input(scene, camera->eye),

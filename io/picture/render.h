@@ -30,7 +30,8 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
 
 /* Renders the scanlines first, first + step, ... of the picture, counted from the top. A
  * pixel is the mean of samples x samples rays; a ray meeting nothing, or a back, is
- * black. Ticks `progress`, which may be NULL, once a scanline.
+ * black. Ticks `progress`, which may be NULL, once a scanline. After a signal pixels not
+ * done are -1.
  * Returns RGB floats, 3 * width for each scanline, with `error` as many more behind them:
  * the standard errors of the pixels, W/m^2. To be freed with alloc_free(). */
 float *render_scanlines(const struct renderer *renderer, const struct camera *camera,

@@ -221,6 +221,25 @@ static bool set_fraction(const struct argument *a)
     return check_range(a, *field, 0.01, " %", " %");
 }
 
+/* Sets a time in seconds: a number, of s, m or h, if that stands behind it. */
+static bool set_time(const struct argument *a)
+{
+    static const char UNITS[] = "smh";
+    static const int SECONDS[] = {1, 60, 3600};
+    char digits[DIGITS_ROOM];
+    size_t length = strlen(a->value);
+    const char *unit = length > 0 ? strchr(UNITS, a->value[length - 1]) : NULL;
+    double number;
+    if (!copy_digits(a->value, length - (unit ? 1 : 0), digits) ||
+        !text_is_number(digits, &number))
+        return is_not(a, "a time, as 90, 90s, 5m or 1h");
+    number *= unit ? SECONDS[unit - UNITS] : 1;
+    if (!check_range(a, number, 1.0, " s", " s"))
+        return false;
+    *(int *)a->field = (int)number;
+    return true;
+}
+
 /* Sets a number of bytes, or of K, M, G or T: powers of 1024. */
 static bool set_bytes(const struct argument *a)
 {
@@ -360,6 +379,7 @@ static const struct option OPTIONS[] = {
     {"--checkpoint", "F", "after each pass", TEXT(checkpoint)},
     {"--every", "N", "", WHOLE(every, 1, 1e9)},
     {"--resume", "F", "go on from there", TEXT(resume)},
+    {"--time", "T", "", set_time, FIELD(seconds), 1, 1e9, NULL},
     {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
     {"--stats", "FILE", "report as JSON", TEXT(stats)},
     {"--dump", "patches|links", "", CHOICE(dump, "nothing|patches|links")},
@@ -673,6 +693,7 @@ static const struct {
                "    fov 45               the angle from bottom to top, degrees (45)\n"
                "    size 512 512         width and height, pixels (512 512)\n"
                "  Only eye and at are needed. An example is scenes/cornell.view.\n"},
+    {"--time", "  as 90s, 5m, 1h: end then, with the light that there is\n"},
     {"--max-level", "  of subdivision (10)\n"},
     {"--verbose", "  the levels of refinement, and more\n"},
     {"--dump", "  prints all patches, or all links, in place of the summary\n"},

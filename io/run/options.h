@@ -39,6 +39,7 @@ struct options {
     const char *resume;       /* path of the checkpoint to read, or NULL */
     const char *at;           /* path of points to read, or NULL */
     const char *report;       /* path of the table of objects to write, or NULL */
+    int seconds;              /* after which the run ends with what it has; 0: none */
     int every;                /* passes from checkpoint to checkpoint, at least 1 */
     int64_t memory;           /* bytes for links and patches; 0: 80 % of the machine's */
     int width, height;        /* of --size; 0: those of the view */

@@ -87,7 +87,7 @@ static int open_stream(const char *path)
         int file = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY);
         if (file >= 0 || !waits || errno != ENXIO)
             return file;
-        if (stop_is_asked()) {
+        if (stop_was_asked()) {
             errno = EINTR;
             return -1;
         }
@@ -102,11 +102,12 @@ static bool send_bytes(int file, const char *bytes, size_t size)
     enum { PAUSE = 100 }; /* milliseconds */
     while (size > 0) {
         struct pollfd ready = {.fd = file, .events = POLLOUT};
-        if (stop_is_asked()) {
+        bool is_ready = poll(&ready, 1, PAUSE) > 0;
+        if (stop_is_asked() || (!is_ready && stop_was_asked())) {
             errno = EINTR;
             return false;
         }
-        if (poll(&ready, 1, PAUSE) <= 0)
+        if (!is_ready)
             continue;
         ssize_t sent = write(file, bytes, size < PIPE_BUF ? size : PIPE_BUF);
         if (sent < 0 && errno != EAGAIN && errno != EINTR)

@@ -31,6 +31,7 @@ static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
 /* A phase of more seconds than this is long: in a run of a minute some phase is. The line
  * comes with the first time left, or after so many seconds. */
 static const double LONG = 30.0, SECONDS_TO_TELL = 5.0;
+static const double CHANGE = 1.5; /* of the time, for it to be told again */
 
 static bool stderr_is_terminal(void)
 {
@@ -74,9 +75,10 @@ int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress
 }
 
 static const char *told; /* the phase last said to take long, or NULL */
+static double told_seconds; /* how long that was said to take */
 
-/* Says once how long a long phase takes. Looks are a quarter of the gather, or less with
- * many splits. */
+/* Says how long a long phase takes, and again when that has changed by more than half.
+ * Looks are a quarter of the gather, or less with many splits. */
 static void tell_long(struct progress_view *view, double seconds)
 {
     static const char RAYS[] = "smaller --final-gather or a larger --epsilon";
@@ -94,14 +96,16 @@ static void tell_long(struct progress_view *view, double seconds)
         return;
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++) {
         double all = PHASES[i].times * seconds / done;
+        bool again = told && strcmp(told, PHASES[i].name) == 0;
         if (strcmp(PHASES[i].phase, view->progress.phase) != 0 || all < LONG ||
-            (told && strcmp(told, PHASES[i].name) == 0))
+            (again && all < CHANGE * told_seconds && told_seconds < CHANGE * all))
             continue;
         print_duration(duration, sizeof duration, all);
         progress_view_clear(view);
         fprintf(stderr, "%s: %s takes about %s; a %s takes less\n", error_program,
                 PHASES[i].name, duration, PHASES[i].shorter);
         told = PHASES[i].name;
+        told_seconds = all;
     }
 }
 

@@ -42,16 +42,22 @@ static void free_tree(struct solver *solver)
     node_block_destroy(&solver->beyond->tree_block);
 }
 
+void answer_clear(struct answer *answer)
+{
+    alloc_free(answer->error);
+    alloc_free(answer->straight);
+    alloc_free(answer->open);
+    final_gather_destroy(answer->gather);
+    *answer = (struct answer){.counts = answer->counts};
+}
+
 static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;
     free_tree(solver);
     conjugate_free(beyond->descent);
     alloc_free(beyond->descent);
-    alloc_free(beyond->answer->error);
-    alloc_free(beyond->answer->straight);
-    alloc_free(beyond->answer->open);
-    final_gather_destroy(beyond->answer->gather);
+    answer_clear(beyond->answer);
     alloc_free(beyond->answer);
     alloc_free(beyond);
 }

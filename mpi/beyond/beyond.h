@@ -52,6 +52,9 @@ struct beyond {
 /* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
+/* Makes the answer an empty one. */
+void answer_clear(struct answer *answer);
+
 /* Frees the vectors for transfers of light, after the last transfer. */
 void beyond_free_vectors(struct solver *solver);
 

@@ -377,6 +377,8 @@ enum finish solver_finish(struct solver *solver, struct vote *vote)
         solve_rows(&g, vote);
     account_work(&solver->account, WORK_FINAL_GATHER, 0, g.bytes);
     end(&g);
+    if (!done)
+        answer_clear(solver->beyond->answer);
     account_end(&solver->account, PHASE_FINAL_GATHER);
     return done ? FINISH_DONE : FINISH_STOPPED;
 }

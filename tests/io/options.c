@@ -144,6 +144,10 @@ static void test_switches(void)
     tap_ok(!parse("--sky 1,2 a.obj") && !parse("--sky 1,2,3,4 a.obj") &&
                !parse("--sky 1,,2 a.obj") && !parse("--sky -1 a.obj"),
            "of nothing else");
+    tap_ok(parse("--time 5m a.obj") && options.seconds == 300 &&
+               parse("--time 90 a.obj") && options.seconds == 90 &&
+               !parse("--time 0 a.obj") && !parse("--time 5x a.obj"),
+           "--time, in seconds or a unit");
     tap_ok(parse("--sky clear,1,2,3 --sun 1,-2,3,4 a.obj") && sky[2] == 3.0 &&
                options.sky.kind == SKY_CLEAR && options.sky.sun.y == -2.0 &&
                options.sky.sun_irradiance == 4.0,

@@ -114,9 +114,9 @@ static void test_log(void)
     remove(LOG);
 }
 
-/* Ticks of a phase that takes so many seconds, one a second; the lines of the log after
- * ten. */
-static int lines_of_phase(const char *phase, double seconds)
+/* Ticks of a phase that seems to take so many seconds, and from the fifth on `times` as
+ * many, one a second; the lines of the log after ten. */
+static int lines_of_paces(const char *phase, double seconds, double times)
 {
     struct progress_view view;
     now = 0.0;
@@ -126,10 +126,15 @@ static int lines_of_phase(const char *phase, double seconds)
     progress_begin(&view.progress, phase, -1, 0);
     for (int i = 0; i <= 10; i++) {
         now = i;
-        progress_tick(&view.progress, i / seconds);
+        progress_tick(&view.progress, i / (i < 5 ? seconds : times * seconds));
     }
     fflush(stderr);
     return log_lines();
+}
+
+static int lines_of_phase(const char *phase, double seconds)
+{
+    return lines_of_paces(phase, seconds, 1.0);
 }
 
 static void test_long(void)
@@ -152,6 +157,9 @@ static void test_long(void)
     if (file)
         fclose(file);
     tap_ok(lines_of_phase("checking", 240.0) == 0, "nor one that nothing shortens");
+    tap_ok(lines_of_paces("gathering", 50.0, 2.0) == 2 &&
+               lines_of_paces("gathering", 50.0, 1.4) == 1,
+           "it is said again when it has become twice as long, and not 1.4 times");
     remove(LOG);
 }
 
