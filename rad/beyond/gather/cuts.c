@@ -18,7 +18,7 @@
 #include "geom/alloc.h"
 
 /* Leaves of a region, at most. */
-enum { REGION_LEAVES = 64 };
+enum { REGION_LEAVES = 16 };
 
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
