@@ -24,6 +24,7 @@ what == "one" && /"min".*"mean".*"max"/ && !/closure/ {
     if (part[2] == "total") rest[turn] = now
     else if (!(part[2] in is_part)) rest[turn] -= now
 }
+what == "one" && /"passes": [0-9]*,$/ { passes = value("passes") }
 what == "one" && /"(triangles|links)": [0-9]*,$/ {
     split($0, part, "\"")
     count[part[2]] = value(part[2])
@@ -37,7 +38,10 @@ what == "one" && /"(triangles|links)": [0-9]*,$/ {
 what == "many" && /"messages_with"/ { gather_messages = value("gather") }
 what == "many" && /"exchanges"/ { exchanges = value("exchanges") }
 what == "many" && /"messages"/ { messages = value("messages") }
-what == "many" && /"broadcast"/ { broadcast = value("broadcast") }
+what == "many" && /"broadcast"/ {
+    broadcast = value("broadcast")
+    whole = value("whole") / ranks
+}
 what == "replay" {
     dealt[$1] = $2
     most[$1] = $3
@@ -47,7 +51,9 @@ what == "replay" {
 function line(name, how, one, many, most_ranks, kind) {
     printf "| %s | %s | %.4f | %.4f | %.4f |\n", name, how, one, many, most_ranks
     total[1] += one; total[2] += many; total[3] += most_ranks
-    if ((kind == "serial" || kind == "repeated") && many > largest) {
+    if (kind != "serial" && kind != "repeated") return
+    undivided += many
+    if (many > largest) {
         largest = many
         which = name
     }
@@ -72,8 +78,9 @@ END {
     log_ranks = log(ranks) / log(2)
     tree = seconds["tree"] > 0
     printf "\n## %s\n\n", title
-    printf "%d triangles, %d links. A message takes %g s, and a byte %g ns.\n\n", \
+    printf "%d triangles, %d links. A message takes %g s, a byte %g ns, ", \
            count["triangles"], count["links"], message, 1e9 / bandwidth
+    printf "a record copied %g ns.\n\n", 1e9 * copy
     printf "| seconds | how | 1 rank, run | %d ranks, counts of a run |", ranks
     print " 1,024 ranks |"
     print "|---|---|---|---|---|"
@@ -86,25 +93,24 @@ END {
     sending("broadcast of scene, octree, tree", out, log_ranks, 10, out)
     if (tree) same("homes of roots", "repeated", "linking")
     else divided("linking of all pairs", "linking", "linking")
-    same("solution made ready for refinement", "repeated", "prepare")
+    # before the first pass all ranks have all light, and later each its own
+    first = seconds["prepare"] / passes
+    line("bounds before the first pass", "repeated", first, first, first, "repeated")
+    even("bounds before the others", seconds["prepare"] - first)
     divided("looks: what is to be split?", "looks", "looks")
     splitting = seconds["refinement"] - seconds["looks"] - seconds["prepare"]
     price = splitting / all["one", "splitting"]
     line("splitting", "replayed", price * all["one", "splitting"],
          price * slowest["many", "splitting"], price * most[1024])
     divided("transfer of light", "solve", "transfer")
-    same("sums through clusters and patches", "repeated", "sums")
-    copies = seconds["gather"] + seconds["scatter"]
-    share = slowest["many", "patches"] / all["one", "patches"]
-    line("copies of flux and radiosity", "repeated", copies, copies * share,
-         copies * share, "repeated")
+    divided("sums through clusters", "sums", "own")
+    copies = copy * slowest["many", "patches"]
+    line("copies of flux and radiosity", "counted", 0, copies, copies)
     divided("push-pull at home", "push_pull", "own")
-    same("routes", "repeated", "routes")
     if (tree) divided("rows of the final gather", "rows", "final_gather")
     if (tree) divided("rows times light", "products", "final_gather")
     solved = seconds["final_gather"] - seconds["rows"] - seconds["products"]
-    if (tree)
-        line("light solved for by rows", "repeated", solved, solved, solved, "repeated")
+    if (tree) even("light solved for by rows", solved)
     same("row sums for the report", "repeated", "row_sums")
     same("blend of leaves for the picture", "repeated", "shading")
     if (seconds["viewpoint"] > 0) same("viewpoint", "repeated", "viewpoint")
@@ -119,6 +125,7 @@ END {
     homes = gather_messages * (1023 / (ranks - 1) - 1) # beside those of `ranks` homes
     sending("gather", sent["transfer"], 0, homes, sent["transfer"])
     sending("scatter", sent["own"], 0, 0, sent["own"])
+    sending("all leaves to all, once", whole, log_ranks, 10, whole)
     if (tree) sending("vectors of the final gather", sent["final_gather"], 0, 0,
                       sent["final_gather"])
     sending("picture to rank 0", picture, log_ranks, 10, picture)
@@ -127,6 +134,8 @@ END {
     printf "Speed-up: %.1f on %d ranks, %.1f on 1,024. ", total[1] / total[2], ranks,
            total[1] / total[3]
     printf "The largest serial or repeated part: %s, %.3f s.\n", which, largest
+    printf "Of serial and repeated ones there are %.3f s: ", undivided
+    printf "at most %.0f on any number of ranks.\n", total[1] / undivided
     mean = all["many", "splitting"] / ranks
     printf "A test takes %.1f ns. The slowest of %d ranks splits %.3f times the mean, ", \
            1e9 * price, ranks, slowest["many", "splitting"] / mean
