@@ -250,8 +250,8 @@ pages: ablation stability
 ablation: $(PHR) $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/ablation.sh
 
-# About half an hour on two cores.
-numbers: errors build/room
+# Some minutes on two cores, once `make panel` has made its truths.
+numbers: errors $(JUDGES:%=$(BUILD)/%) $(PHR) pathtracer build/viewfactors build/room
 	BUILD="$(BUILD)" MAKE="$(MAKE)" sh tests/bench/numbers.sh
 
 # About two minutes on two cores.
