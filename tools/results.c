@@ -235,8 +235,8 @@ static bool show_views(struct run *run, const struct renderer *renderer,
     return true;
 }
 
-/* Collective. Prepares the light of pictures, and shows the views left. Their rays are not
- * counted among the solution's. */
+/* Collective. Prepares the light of pictures, and shows the views left. Their rays are
+ * not counted among the solution's. */
 static bool show_pictures(struct run *run, struct halt *halt)
 {
     struct model *model = &run->solver->model;

@@ -34,7 +34,7 @@ struct run {
     const char *kept;              /* path of the last checkpoint made or read, or NULL */
     int haste;                     /* the signal after which the run shows what there is;
                                       0: none */
-    const char *shown;             /* what it shows then, for a line at its end; or NULL */
+    const char *shown;             /* what it shows then, said at its end; or NULL */
     struct error error;            /* ends the run */
     double start;                  /* comm_seconds() at the beginning */
     double first_bound;            /* vote.remaining of the first iteration of a pass */

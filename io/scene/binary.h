@@ -18,7 +18,8 @@ struct binary {
 };
 
 /* Reads an open file, which has to begin with one of the words of `magic`, if there
- * are any. Owned by the caller until binary_free(), which is allowed (not needed) after a failure.
+ * are any. Owned by the caller until binary_free(), which is allowed (not needed) after a
+ * failure.
  * Errors: "PATH: cannot read: REASON"; "PATH: not KIND". Both ask for EXIT_USAGE. */
 bool binary_read(struct binary *binary, struct source *source, const char *magic,
                  const char *kind, struct error *error);

@@ -44,8 +44,8 @@ void conjugate_free(struct conjugate *cg)
 }
 
 /* Row sum times reflectance is the factor of light's growth from bounce to bounce, kept
- * at or below half way from rho to 1. A lower limit took light from leaves close to lamps,
- * which have links of many levels. */
+ * at or below half way from rho to 1. A lower limit took light from leaves close to
+ * lamps, which have links of many levels. */
 static double cap_of(double reflectance, double row)
 {
     double most = 0.5 * (1.0 + reflectance);

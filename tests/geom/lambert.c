@@ -1,5 +1,5 @@
 /* Tests of geom/lambert.h: laws of all polygons. Those around a point cover 1, parts add
- * up, far ones are points, the horizon cuts. (Exact values: tests/rad/beyond/factors.c.) */
+ * up, far ones are points, the horizon cuts. Exact values: tests/rad/beyond/factors.c. */
 #include "geom/lambert.h"
 
 #include "tests/scenes.h"

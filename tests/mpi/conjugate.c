@@ -199,8 +199,8 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
     return worst / largest;
 }
 
-/* By how much the capped row sum R of a leaf times rho exceeds c = (1 + rho) / 2, at most;
- * and by how much a factor differs from min(1, c / (rho R)). Counts capped rows. */
+/* By how much the capped row sum R of a leaf times rho exceeds c = (1 + rho) / 2, at
+ * most; and by how much a factor differs from min(1, c / (rho R)). Counts capped rows. */
 static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX],
                         int64_t *capped)
 {
