@@ -89,16 +89,24 @@ static void join_small_parts(struct spaces *spaces, int32_t all)
     alloc_free(roots);
 }
 
+int space_rays(const struct scene *scene)
+{
+    enum { LEAST = 4, ALL = 1 << 13 }; /* of a root; of all, some milliseconds */
+    int each = ALL / scene_root_count(scene);
+    return each > LEAST ? each : LEAST;
+}
+
 int32_t *places_met(const struct scene *scene, const struct octree *octree,
                     int32_t first, int32_t end)
 {
     int32_t all = scene_root_count(scene);
-    int32_t *met = alloc_array(SPACE_RAYS * (size_t)(end - first), sizeof *met);
+    int rays = space_rays(scene);
+    int32_t *met = alloc_array((size_t)rays * (size_t)(end - first), sizeof *met);
     int32_t *at = met;
     struct octree_counts counts = {0};
     for (int32_t root = first; root < end && !stop_is_asked(); root++) {
         struct triangle t = scene_root_triangle(scene, root);
-        for (int i = 0; i < SPACE_RAYS; i++, at++) {
+        for (int i = 0; i < rays; i++, at++) {
             *at = -1;
             if (!(scene_root_area(scene, root) > 0.0))
                 continue;
@@ -106,7 +114,7 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
             bool behind = material_is_pane(scene_root_material(scene, root)) && i % 2;
             struct vec3 normal = vec3_scale(scene_root_plane(scene, root).normal,
                                             behind ? -1.0 : 1.0);
-            struct half_line ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
+            struct half_line ray = ray_sample(&t, normal, seed, i, rays);
             *at = root_met(scene, octree, &ray, all, &counts);
         }
     }
@@ -116,11 +124,12 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
 static int32_t *find_parts(const struct scene *scene, const int32_t *met)
 {
     int32_t all = scene_root_count(scene);
+    int rays = space_rays(scene);
     int32_t *up = alloc_array((size_t)all + 1, sizeof *up);
     for (int32_t root = 0; root <= all; root++)
         up[root] = met ? root : 0;
     for (int32_t root = 0; root < all && met; root++)
-        for (int i = 0; i < SPACE_RAYS; i++, met++)
+        for (int i = 0; i < rays; i++, met++)
             if (*met >= 0)
                 up[part_of(up, root)] = part_of(up, *met);
     for (int32_t root = 0; root <= all; root++)

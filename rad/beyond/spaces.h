@@ -23,10 +23,11 @@ struct spaces {
     int32_t count;  /* at least 1 */
 };
 
-/* Rays from each root, which tell its space. */
-enum { SPACE_RAYS = 4 };
+/* Rays from each root, which tell its space: more where there are few roots, so that a
+ * door ajar is found. */
+int space_rays(const struct scene *scene);
 
-/* [SPACE_RAYS for each of the roots first .. end - 1] where its rays end: a root, the
+/* [space_rays() for each of the roots first .. end - 1] where its rays end: a root, the
  * number of all roots for the outside, or -1 (on a back, or the root has no area). To be
  * freed with alloc_free(). */
 int32_t *places_met(const struct scene *scene, const struct octree *octree,
