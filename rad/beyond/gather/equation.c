@@ -41,6 +41,10 @@
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
+/* Leaves with less than this part of the mean radiosity are solved for as if this
+ * bright. */
+static const double DARK = 1e-3;
+
 /* Arrays have room for all leaves; what is not used of them takes no memory. */
 struct equation equation_start(struct final_gather *gather,
                                const struct gather_mesh *mesh, struct totals totals)
@@ -269,9 +273,10 @@ double *equation_weigh(const struct equation *e, const struct rgb *b)
     total_groups(&e->totals, terms, e->space, e->count, spaces, 2, sums);
     for (int64_t i = 0; i < e->count; i++) {
         const double *sum = &sums[2 * e->space[i]];
-        double light = fmax(rgb_sum(b[i]), e->gather->lit[e->space[i]].mean);
+        double least = DARK * e->gather->lit[e->space[i]].mean;
         if (sum[0] > 0.0)
-            weights[i] = e->areas[i] / sum[0] + 1.0 / (sum[1] * light);
+            weights[i] = e->areas[i] / sum[0] +
+                         1.0 / (sum[1] * fmax(rgb_sum(b[i]), least));
     }
     alloc_free(sums);
     alloc_free(terms);
