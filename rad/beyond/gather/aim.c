@@ -305,6 +305,16 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     return sum / segments;
 }
 
+/* The share of a node's light that a leaf may see although all of its segments miss. By
+ * segments of the node's own looks alone: node.seen takes those of other nodes for as
+ * many more, and all of these miss behind the same wall. */
+static double share_in_doubt(const struct cut_node *node)
+{
+    return node->asked == 0
+               ? node->seen
+               : ((double)node->arrived + 0.5) / (double)(node->asked + 1);
+}
+
 /* A node whose light is worth a segment or more gets some, and they share its light. The
  * fainter nodes are dealt a whole number of segments together; the one that gets a
  * segment stands for those that get none. Few segments may all miss, which would seem
@@ -348,8 +358,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             cuts->tally[2 * (cut.first + i)] += aim.fired - before.fired;
             cuts->tally[2 * (cut.first + i) + 1] += aim.arrived - before.arrived;
         }
-        double known = (double)(node.asked + 1);
-        double share = node.seen * known / (known + count);
+        double share = share_in_doubt(&node);
         if (!none && at->space != space)
             r->gather->counts.crossed++;
         if (none && unseen) {
