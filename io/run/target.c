@@ -16,8 +16,8 @@ static const struct {
     [FORMAT_HDR] = {"hdr", false, false},
     [FORMAT_PLY] = {"ply", true, true},
     [FORMAT_VTK] = {"vtk", true, false},
-    [FORMAT_ERROR] = {"error.pfm", false, false},
     [FORMAT_GLB] = {"glb", true, true},
+    [FORMAT_ERROR] = {"error.pfm", false, false},
 };
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
 
