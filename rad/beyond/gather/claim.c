@@ -12,6 +12,10 @@
 #include "geom/alloc.h"
 #include "rad/flux.h"
 
+/* The light of an undivided root varies by about this part times its size over its
+ * distance: seen from near, a root may be lit unlike its mean. */
+static const double UNDIVIDED = 0.3;
+
 /* The error of 95 % of leaves is less than this many deviations: these are estimated for
  * many leaves together, and single ones are noisier or calmer. */
 static const double BOUND = 2.5;
@@ -23,17 +27,24 @@ static const double FACTORS = 4e-4;
  * the mean and more. */
 enum { CLASSES = 48, BRIGHTEST = 8 };
 
-/* An estimate of how B varies within a leaf: half of its difference from the mean over
- * its parent; of undivided roots, half of the reflected radiosity. */
-static struct rgb variation_of(const struct equation *e, int64_t place)
+/* An estimate of how B varies within a leaf as seen from a point: half of its difference
+ * from the mean over its parent; of undivided roots, a part of the reflected
+ * radiosity. */
+static struct rgb variation_of(const struct equation *e, int64_t place, struct vec3 from)
 {
     const struct forest *forest = e->gather->model->forest;
     int32_t patch = e->gather->order[place], parent = forest->patches[patch].parent;
     struct rgb base = parent >= 0 ? e->radiosity[e->gather->place[parent]]
                                   : forest_material(forest, patch)->emission;
     struct rgb deviation = rgb_sub(e->radiosity[place], base);
+    double part = 0.5;
+    if (parent < 0) {
+        struct vec3 apart = vec3_sub(e->gather->near->leaves[patch].middle, from);
+        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
+        part = fmin(1.0, UNDIVIDED * near);
+    }
     for (int c = 0; c < BANDS; c++)
-        deviation.band[c] *= 0.5;
+        deviation.band[c] *= part;
     return deviation;
 }
 
@@ -41,12 +52,13 @@ void claim_by_mesh(const struct equation *e, struct rgb *variance)
 {
     const struct final_gather *gather = e->gather;
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
+        struct vec3 from = gather->near->leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
             double off = FACTORS * gather->rows[row].straight.band[c];
             variance[row].band[c] = off * off;
         }
         for (; k < gather->rows[row].end; k++) {
-            struct rgb deviation = variation_of(e, gather->terms[k].place);
+            struct rgb deviation = variation_of(e, gather->terms[k].place, from);
             for (int c = 0; c < BANDS; c++) {
                 double h = (double)gather->terms[k].weight[c] * deviation.band[c];
                 variance[row].band[c] += h * h;
