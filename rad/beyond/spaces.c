@@ -17,6 +17,9 @@
  * than the emitted light, in white ones many times as much. */
 static const double LASTING = 0.1;
 
+/* Rays from a root at least, and from all roots, which take some milliseconds. */
+enum { ROOT_RAYS = 4, ALL_RAYS = 8192 };
+
 /* A space with less than this part of all light has no number: its light would have few
  * digits in the integers of all. */
 static const double FAINT = 0x1p-40;
@@ -91,9 +94,8 @@ static void join_small_parts(struct spaces *spaces, int32_t all)
 
 int space_rays(const struct scene *scene)
 {
-    enum { LEAST = 4, ALL = 1 << 13 }; /* of a root; of all, some milliseconds */
-    int each = ALL / scene_root_count(scene);
-    return each > LEAST ? each : LEAST;
+    int each = ALL_RAYS / scene_root_count(scene);
+    return each > ROOT_RAYS ? each : ROOT_RAYS;
 }
 
 int32_t *places_met(const struct scene *scene, const struct octree *octree,

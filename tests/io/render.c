@@ -45,13 +45,15 @@ static double factor_to_lamp(struct vec3 x, double from, double to)
            point_triangle_factor(x, point(0, 0, 1), &parts[1]);
 }
 
-/* A floor of two leaves, a square lamp above, of which a plate of this half side, halfway
- * between, hides some, with so many rays; 0: there is no plate. */
-static struct solution half_shadow(int rays, double half)
+/* A square floor of two leaves with this half side, a square lamp above, of which a plate
+ * of half side `half`, halfway between, hides some, with so many rays; 0: there is no
+ * plate. */
+static struct solution half_shadow(int rays, double floor, double half)
 {
     char words[64];
     struct soup soup = {0};
-    soup_add_quad(&soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
+    soup_add_quad(&soup, point(-floor, -floor, 0), point(2 * floor, 0, 0),
+                  point(0, 2 * floor, 0), 1);
     paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
     paint(&soup, 0.0, 100.0);
@@ -69,7 +71,7 @@ static struct solution half_shadow(int rays, double half)
  * 32: segments are a quarter of the rays at least. */
 static void test_shadow(bool all, int rays, double allowed)
 {
-    struct solution s = half_shadow(rays, 0.2);
+    struct solution s = half_shadow(rays, 1.0, 0.2);
     struct shading *shading = all ? NULL : shade_rest(&s);
     double lit = 0.0, dark = 0.0, half = 0.0;
     for (int i = 0; i <= 10; i++) {
@@ -99,15 +101,14 @@ static int64_t segments_at(struct solution *s, const struct shading *shading,
     return counts->segments - before;
 }
 
-/* A pixel that is sure has 4 segments; also where the mesh, here of two leaves, has
- * another light, if all of the lamp is seen from around. If only some is, as near a
- * plate, or some segments are blocked, the pixel has a quarter to all of the rays from a
+/* A pixel that is sure has 4 segments. Where the mesh, here of two leaves, has another
+ * light, or some segments are blocked, the pixel has a quarter to all of the rays from a
  * leaf besides. */
 static void test_noise(void)
 {
-    struct solution even = half_shadow(4096, 0.0), s = half_shadow(4096, 0.2);
+    struct solution even = half_shadow(4096, 0.05, 0.0), s = half_shadow(4096, 1.0, 0.2);
     struct shading *of_even = shade_rest(&even), *shading = shade_rest(&s);
-    int64_t sure = segments_at(&even, of_even, point(0.7, 0.1, 0.0));
+    int64_t sure = segments_at(&even, of_even, point(0.03, 0.01, 0.0));
     int64_t noisy = segments_at(&s, shading, point(0.43, 0.015, 0.0));
     int64_t lit = segments_at(&s, shading, point(0.7, 0.1, 0.0));
     tap_ok(sure == 4, "a pixel that is sure has %lld segments", (long long)sure);
@@ -125,7 +126,7 @@ static void test_noise(void)
  * the scene, which is less: so by .02 of the light here at most. */
 static void test_deviation(void)
 {
-    struct solution s = half_shadow(256, 0.2);
+    struct solution s = half_shadow(256, 1.0, 0.2);
     struct shading *shading = shade_rest(&s);
     double square = 0.0;
     for (int i = 0; i < 100; i++) {
@@ -558,7 +559,7 @@ static void look_at_half(struct progress *progress)
  * horizon have other work than those below: of 34, two make up a tenth. */
 static void test_order(void)
 {
-    struct solution s = half_shadow(64, 0.2);
+    struct solution s = half_shadow(64, 1.0, 0.2);
     struct final_gather *gather = s.solver->beyond->answer->gather;
     struct renderer renderer = renderer_make(s.octree, NULL, gather);
     struct camera camera = {.eye = point(0, -4, 1), .at = point(0, 4, 1),

@@ -206,7 +206,8 @@ static bool is_within(double a, double b, double part)
 
 /* Beside a bright room, behind a wall without thickness or far away, a dim one of any
  * size has the leaves, the light and the errors that it has alone. (Leaves and errors are
- * by chance: rooms differ in the order of faces.) One without a lamp is dark. */
+ * by chance: rooms differ in the order of faces.) One without a lamp is dark. What is
+ * told of all is a fifth more at most: looks have spent segments on the other lamp. */
 static void test_dim_room(double x, double size, double lamp, const char *words)
 {
     struct soup soup = {0};
@@ -236,7 +237,7 @@ static void test_dim_room(double x, double size, double lamp, const char *words)
            lit.error / lit_alone.error);
     double told = alone.solver->beyond->answer->counts.error;
     tap_ok(mean_radiosity(&s, 2 * ROOM_ROOTS, ROOM_ROOTS) == 0.0 &&
-               is_within(s.solver->beyond->answer->counts.error, told, 0.1),
+               is_within(s.solver->beyond->answer->counts.error, told, 0.2),
            "and a dark one; the error of all is %.2f %%, alone %.2f %%",
            100.0 * s.solver->beyond->answer->counts.error, 100.0 * told);
     solution_free(&alone);
