@@ -3,11 +3,11 @@
  * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h): half by
  * the light of nodes with nothing in the way, half by the part of this light seen from
  * the region. So a lamp behind a wall, however bright, leaves some segments for lamps in
- * the room, and a segment to a node not seen from the region counts at most twice. (Light
- * of another space, as long as no segment has seen any, has half of the first half at
- * most, and adds nothing to what a leaf is unsure of.) A sender of which the exact factor
- * is F, and n segments of which have the kernels K between their ends and meet a blocker
- * or not (V), brings
+ * the room, and a segment to a node not seen from the region counts at most twice. In the
+ * first half the light of another space counts as no brighter than that of this one. As
+ * long as no segment has found any of it, missing it leaves no doubt. Let F be the exact
+ * factor of a sender. Each segment to it has the kernel K between its ends, and V = 1 if
+ * it arrives, 0 if something blocks it. The sender brings
  *
  *     F  sum of V K / sum of K  times its light:
  *
@@ -60,9 +60,9 @@ static void add_segment(struct volley *volley, int i, int count, double direct,
     volley->both += direct * seen;
 }
 
-/* Adds the variance of the volley's light, in the colour of one of its senders: as if by
- * chance, by how far single segments are from the mean visible share, and by the
- * difference of its halves. */
+/* Adds the variance of the volley's light to the row, twice: as by chance, from the
+ * scatter of single segments around the mean visible share; and by the difference of the
+ * two halves. Both have the colour of one sender of the volley. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
 {
     double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
@@ -315,11 +315,11 @@ static double share_in_doubt(const struct cut_node *node)
                : ((double)node->arrived + 0.5) / (double)(node->asked + 1);
 }
 
-/* A node whose light is worth a segment or more gets some, and they share its light. The
- * fainter nodes are dealt a whole number of segments together; the one that gets a
- * segment stands for those that get none. Few segments may all miss, which would seem
- * sure. So where the region sees a share of a node, its variance is at least that of a
- * chance with this share. */
+/* Aims at the nodes of a cut. A node with the light of a segment or more gets segments of
+ * its own, which share this light. The fainter nodes are dealt a whole number of segments
+ * together: one that gets a segment stands for others that get none. If all segments to a
+ * node miss, they agree, and would seem sure. So the row's variance is at least that of
+ * draws that arrive with the share in doubt. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row->leaf);

@@ -3,11 +3,11 @@
  * In a closed scene as much light arrives as leaves, on bare surfaces (on which no other
  * face lies). Rows sum to 1, but columns have the noise of rays and the errors of leaves
  * seen in part, so W loses or makes some thousandths of the light: with rho .99 a
- * hundredfold would be missing in the end. The loss is made up for within W, where rows
- * are least sure: in proportion to s, the irradiances of the turn before over the numbers
- * of rays. (A black end of a pipe has few, and shall not tell how bright the wall is.)
- * With the areas a, the kept shares k of the light leaving, 1 but where a leaf faces out
- * of the scene, and W' = W + s (k a - W^T a)^T / (a^T s),
+ * hundredfold would be missing in the end. W is mended where rows are least sure: in
+ * proportion to s, the irradiance of the turn before over the number of rays. (So the
+ * noise of a black end of a pipe, which has few rays, stays there, and does not change
+ * the wall.) With the areas a, the kept shares k of the light leaving, 1 but where a leaf
+ * faces out of the scene, and W' = W + s (k a - W^T a)^T / (a^T s),
  *
  *     a^T W' = (k a)^T,
  *

@@ -49,17 +49,18 @@ void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
  * balance lacks values below 0, now 0, and the residual of the equation. */
 void balance_absorb(struct light_balance *b, struct rgb *h);
 
-/* Finds spaces that are closed though rays escape: in a thing that touches walls and has
- * no faces there, rays are lost on backs, but no light gets in. Leaves with a thing
- * across have rays of both sides, and tell nothing. Lost light is held against what is
- * absorbed: in a white room it is missing at every reflection. A space with a sky is
- * open. Returns whether there are more. */
+/* Finds spaces that are closed though rays escape. In a thing that touches walls and has
+ * no faces there rays are lost on backs, but no light gets there. So a space is closed if
+ * rays lose next to no light, compared with what is absorbed: in a white room lost light
+ * is missing at every reflection. Leaves with a thing across, whose rays are of both
+ * sides, do not count. A space with a sky is open. Returns whether there are more. */
 bool balance_find_more(struct light_balance *b, const struct rgb *radiosity);
 
-/* Finds what light in an open space may be off by in the end: rows lose or make light at
- * each reflection, besides what their leaves lose by their own rays. Of that as much is
- * left as of the light straight from lamps: little in a dark room, a hundredfold in a
- * white one. `h`: irradiances; `again`: those of the `reflected` light alone. */
+/* Finds by which part the light of an open space may be off in the end. Rows lose or make
+ * light at each reflection, besides what leaves the scene. This light is reflected as
+ * often as light straight from lamps: little in a dark room, a hundredfold in a white
+ * one. So the part is their ratio. `h`: irradiances; `again`: those of the `reflected`
+ * light alone. */
 void balance_find_unsure(struct light_balance *b, const struct rgb *h,
                          const struct rgb *reflected, const struct rgb *again);
 

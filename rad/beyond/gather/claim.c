@@ -149,9 +149,9 @@ struct noise {
     double by_halves, by_chance;
 };
 
-/* Collective. Adds each leaf, a band at a time, to a class of its space, of
- * [CLASSES * lit_count()] all classes, whose number `own`, [BANDS * count], tells. Leaves
- * count by their area and the square of their reflectance. */
+/* Collective. Sums up the noise of each class, [CLASSES * lit_count()]. In each band a
+ * leaf is in one class of its space; `own`, [BANDS * count], gets the number of that
+ * class. A leaf counts by its area times the square of its reflectance. */
 static void classify(const struct equation *e, struct noise *classes, int32_t *own)
 {
     const struct gather_row *rows = e->gather->rows;
@@ -186,13 +186,13 @@ static void classify(const struct equation *e, struct noise *classes, int32_t *o
     alloc_free(light);
 }
 
-/* The ratio of the sequence's variance to the one by chance, of reflected light, by the
- * variances of the leaves of a class by their halves and by chance. A quarter of the
- * squared difference of two halves is the variance of their mean if the two are
- * independent, as if by chance, where the ratio is 1. Of a sequence the second half falls
- * into the gaps of the first: where variance falls threefold with twice the rays, as in
- * the Cornell box and in rooms, the variance is half of that. There the ratio is small,
- * but not where a few rays bring most light, as in a storey below a stairwell. */
+/* The ratio of the sequence's variance to that by chance, for a class of leaves. A
+ * quarter of the squared difference of two halves is the variance of their mean if the
+ * halves are independent. Let q be this variance over the one by chance: 1 for
+ * independent halves. But the second half of a sequence falls into the gaps of the first.
+ * Where twice the rays leave a third of the variance, as in the Cornell box and in rooms,
+ * the mean has half of what its halves tell. So the ratio is q / (2 - q). Below a
+ * stairwell, where a few rays bring most light, it is near 1. */
 static double ratio_of_sequence(const struct noise *class)
 {
     double ratio =

@@ -10,10 +10,10 @@
  * variances. Pre: e->radiosity is the solution, as for the next. */
 void claim_by_mesh(const struct equation *e, struct rgb *variance);
 
-/* The variance of each row by the choice of rays, if by chance, and of segments. By rays
- * it changes as the light of the links gives way to the solution: links may have brought
- * much light through a window, or none. As if each ray brought the light of a term: all
- * rays weigh the same. Pre: the forest has the light of the links. */
+/* Finds two variances of each row, as by chance: that by rays, and that by segments. Rows
+ * were made with the light of the links, which may have brought much through a window, or
+ * none. So the one by rays is scaled as the variance of B over its terms changes, as if
+ * each ray brought the light of one. Pre: the forest has the light of the links. */
 void claim_find_noise(const struct equation *e, struct rgb *by_rays,
                       struct rgb *by_segments);
 
@@ -24,8 +24,8 @@ void claim_find_noise(const struct equation *e, struct rgb *by_rays,
 void claim_raise_to_sisters(const struct forest *forest, const int32_t *leaves,
                             int64_t count, const int *rays, struct rgb *variance);
 
-/* Collective. Makes the variance of each row by chance the one by the choice of rays: by
- * the sequence's ratio, estimated over all leaves with about as much light. */
+/* Collective. Makes variances by chance those of a sequence. The ratio of the two is
+ * estimated over the leaves of a space with about as much light. */
 void claim_by_rays(const struct equation *e, struct rgb *variance);
 
 /* Collective. Finds the bound on the error of B of 95 % of leaves, `error`, W/m^2, by the

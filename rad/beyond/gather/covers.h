@@ -13,10 +13,9 @@ bool ray_comes_from_inside(struct receiver *r, struct vec3 origin,
  * where surfaces meet, there is none. */
 bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end);
 
-/* Fills in the kept share of the leaf's light. Rays seeming to begin inside of a thing do
- * so only if others begin outside, or all see backs: where walls show their backs and end
- * a floor and a ceiling, the whole room is as the inside of a column, and its rays are
- * lost on the backs. */
+/* Fills in the kept share of the leaf's light. Rays that seem to begin inside of a thing
+ * are believed if all seem so, or if one begins outside. Else their light is lost: a room
+ * that shows the backs of its walls is like the inside of a column. */
 void receiver_find_outside(struct receiver *r);
 
 /* Fills in the shares of the leaf's area: the bare one, not covered by another face in

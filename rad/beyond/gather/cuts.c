@@ -7,8 +7,8 @@
  * finding nothing; no share stands for light itself. Of a node that k of n segments reach
  * the share is taken for (k + m) / (n + 1), with the mean share m of all nodes of the
  * cut: so no share is 0, and a node behind a wall with a window counts for less than one
- * behind a leg of a chair. By shares of 0 for nodes without a segment, too, segments
- * would go where others have gone, looks would be noisy, and leaves be split tenfold.
+ * behind a leg of a chair. If nodes without a segment had shares of 0, segments would go
+ * where others have gone: looks would be noisy, and ten times as many leaves split.
  *
  * Segments are counted by each rank and added up between rounds of looks. */
 #include "rad/beyond/gather/cuts.h"

@@ -31,9 +31,9 @@ struct cut_node {
     int64_t arrived; /* those of them that nothing blocks */
     double worth;    /* light reaching the region, about, with nothing in the way, over
                         all bands, W/m^2 */
-    double found;    /* share of this light by which segments are dealt, 1 */
-    double seen;     /* share of this light that may be seen from the region, 1; above
-                        0 */
+    double found;    /* arrived / asked, by which segments are dealt, 1; not asked: seen,
+                        or 0 if of a brighter space */
+    double seen;     /* the same, with the cut's mean for one segment more: above 0 */
     double upto;     /* light by which one of the nodes is chosen, of those up to this
                         one, W/m^2 */
 };
@@ -54,9 +54,9 @@ struct cuts {
                        last cuts_learn(), and those that arrive; NULL: not counted */
 };
 
-/* The part of a node's light by which a region of this space deals segments to the node
- * as long as none has seen it, 1: where no ray of any root has passed, hardly any will,
- * and a lamp in another room is as good as a thousand times as bright. */
+/* The part of a node's light that counts in a region of this space as long as no segment
+ * has arrived, 1. A brighter space counts as no brighter than this one: rays of all roots
+ * have found no way from there, so hardly any segment will. */
 double cuts_blind_part(const struct senders *senders, const struct sender_node *node,
                        int32_t space);
 

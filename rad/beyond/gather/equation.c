@@ -10,20 +10,20 @@
  * costs one tracing, and products with a sparse matrix.
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side.
- * In the residual of the equation a leaf counts by its area and, for one half, relative
- * to its light: else things below a wide sky would be left as the links have them.
+ * In the residual a leaf counts half by its area, half as one leaf, relative to its own
+ * light. By area alone things below a wide sky would be as the links leave them.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
  * light there (rays.c). There the leaf is darker than in the mean, so its rest, seen by
- * others, is brighter. With the part n of the leaf's light for near receivers and the
- * mean radiosity L met by these, far ones are shown B + n (B - L), and less where
- * n > 1/2: min(1, 2 (1 - n)) of the difference. (n / (1 - n) would be the whole, and
- * noise where hardly any far ray meets the leaf.) As a part of W this would make rows of
- * both signs, and light in bright rooms would grow with each reflection; a factor of B
- * makes none. The factors are those of the answer before, so light is solved for in
- * turns, until one changes nothing. In the first turn they are 1: by the links' light,
- * which may lack much in a gap, some would be high enough to make a bright room reflect
- * more than it receives.
+ * others, is brighter. Near receivers get the part n of the leaf's light, and meet the
+ * mean radiosity L. Far ones are shown B + n (B - L). Where n is above 1/2 they are shown
+ * less: 2 (1 - n) of this difference. (The whole difference is n / (1 - n) of B - L, and
+ * noise where hardly any far ray meets the leaf.) Within W the difference would be
+ * weights of both signs, and light in bright rooms would grow with each reflection. So it
+ * is a factor of B, found from the answer of the turn before: light is solved for in
+ * turns, until one changes nothing. In the first turn all factors are 1. The links' light
+ * may lack much in a gap, and by it some factors would be so high that a bright room
+ * reflects more than it receives.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part seen by others is brighter than the mean, by the inverse of its
@@ -149,8 +149,8 @@ double equation_shining_area(const struct equation *e, int64_t leaf)
 /* --- what rows see --- */
 
 /* The pull: inner patches get the mean of their leaves, by the shares of these outside of
- * things. Patches without such a share get B of their parents, unless a thing is across
- * these: slopes between neighbours do not know of others. */
+ * things. A patch without such a share gets B of its parent, since the slope over its
+ * sisters takes its B, too. Where a thing is across the parent there is no slope. */
 static void pull(struct equation *e)
 {
     const struct final_gather *gather = e->gather;

@@ -81,9 +81,9 @@ void equation_find_outside(struct equation *e, const int32_t *place,
  * these over inner patches. */
 void equation_set(struct equation *e, const int32_t *place, const struct rgb *values);
 
-/* Finds what rows see of the radiosities `b`: of leaves partly inside of things the part
- * outside, which receives all their light; of leaves too near what is shown. `lamps`:
- * with emission. Then equation_set() is to be called. */
+/* Finds what rows see of leaves with the radiosities `b`. Of a leaf partly inside of
+ * things they see the part outside, which reflects all the light of the leaf. Leaves too
+ * near are shown. `lamps`: `b` has emission. To be followed by equation_set(). */
 void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
                    struct rgb *seen);
 

@@ -18,9 +18,10 @@
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/sample.h"
 
-/* A sender is taken as a whole in an exact row if B, times the sender's factor and the
- * number of rays, varies over the sender by less than this times the root of epsilon of
- * the mean: so errors of senders fall with this root, as those of the mesh do. */
+/* An exact row takes a sender as a whole if F times the range of B over the sender, times
+ * the number of rays, is at most VARIES times the root of epsilon times the mean
+ * radiosity. (A far one counts less: is_to_be_split().) So errors fall with this root, as
+ * the mesh's. */
 static const double VARIES = 10.0;
 
 /* Most quarterings of a leaf. */
@@ -61,9 +62,9 @@ static void place_of_light(const struct facet *to, const struct triangle *sender
         w[k] = all > 0.0 ? vec3_axis(sum, k) / all : 1.0 / 3.0;
 }
 
-/* True if a sender over which B varies by `range` is to be taken in parts: over a sender
- * the kernel varies by about the ratio of size to distance, and not linearly by the
- * square of this ratio. */
+/* True if a sender over which B varies by `range` is to be taken in parts. The kernel
+ * varies over a sender by about the ratio of size to distance, and the part of this that
+ * is not linear by the square of the ratio. That part is the error. */
 static bool is_to_be_split(const struct receiver *r, const struct triangle *sender,
                            double factor, double range)
 {

@@ -33,7 +33,7 @@ struct gather_sums {
 /* A leaf at points met by rays too near for its mean to hold: their paths went on from
  * there. */
 struct gather_near {
-    int64_t area;         /* sum over senders: area, times the part of rays that meet
+    int64_t area;         /* sum over receivers: area, times the part of rays that meet
                              the leaf too near. By reciprocity this is the leaf's area,
                              times the part of its light for near receivers */
     int64_t watts[BANDS]; /* found there by the rays, emitted by lamps */
@@ -53,7 +53,8 @@ struct gather_leaf {
     struct gather_slope slope;
 };
 
-/* Sums over ranks, so of integers; and the patches as met by rays. */
+/* Light met at leaves too near, in integers, for sums over ranks; patches as met by
+ * rays. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
                                   all ranks, once these are added up, by number */

@@ -4,8 +4,8 @@
 
 #include "rad/beyond/node.h"
 
-/* Bands with less than this part of all light are no more right than one with this part:
- * their light is known no better than to the tolerance of all. */
+/* A band with less than this part of all light is made no more right than one with this
+ * part, since the tolerance of the solution is a part of all light. */
 #define GATHER_DIM 1e-3
 
 /* Means over the surfaces of a space, but for a sky, by the radiosities of the forest. */
@@ -15,9 +15,9 @@ struct lit {
     double reflected;  /* the reflected part, over bands, W/m^2 */
     double lamp_least; /* a lamp emits more than this, over bands, W/m^2 */
     double bright_least; /* a bright patch reflects more than this */
-    struct rgb scale;  /* factors of bands: times these all bands have the mean of all
-                          three. A band with less than GATHER_DIM of this mean counts as
-                          having so much, 1 */
+    struct rgb scale;  /* factors that give each band the mean of all three, 1. A band
+                          with less than GATHER_DIM of this mean counts as having so
+                          much */
 };
 
 /* The number of spaces, and the one of a patch. */

@@ -7,8 +7,8 @@
 /* A look at a leaf: the light of its quarters by a few rays, in the same directions. */
 struct gather_look {
     float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
-    double noise;              /* variance of rho H of a quarter, by chance, from the mean
-                                  of all */
+    double noise;              /* variance by chance of rho H of a quarter, around the
+                                  mean of all four */
     double variance;           /* of rho H of a ray with its segment, over bands,
                                   (W/m^2)^2 */
     double of_segment;         /* the segment's part of `variance` */

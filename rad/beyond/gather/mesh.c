@@ -8,15 +8,15 @@
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
  * so all leaves have about the same share of the error. Where a thing stands on a leaf,
- * chance counts as well: below a house the light of a lawn is another one. Leaves are not
- * looked at if neither their own light, by the links, nor the mean light would be enough,
- * squared, for a split. In a scene of many small triangles few are looked at.
+ * chance counts as well: below a house the light of a lawn is another one. A leaf is
+ * looked at only if a split is possible: if area * (rho H)^2 is above this limit, for the
+ * leaf's own light by the links and the mean light of its space together. In a scene of
+ * many small triangles few are looked at.
  *
- * Leaves with exact rows are not looked at: links without blockers tell where B varies,
- * over a leaf B is linear, and a leaf where B bends (slope.c) is split.
- * But an undivided root has no parent: where a surface is many small roots, each link to
- * one tells too little to divide the root, and B would be constant over each. So these
- * are looked at, too.
+ * Leaves with exact rows are not looked at. Links without blockers tell where B varies; B
+ * is linear over a leaf, and a leaf over which B bends (slope.c) is split. Undivided
+ * roots are looked at all the same. They have no parent, so B is constant over each.
+ * Where a surface is made of many small roots, links tell too little to divide them.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
@@ -275,8 +275,8 @@ static bool is_black(const struct forest *forest, int32_t leaf)
 
 /* Shares rays and segments in proportion to the square root of area times variance. Exact
  * rows, which make no use of theirs, have the mean number. A black leaf has the mean
- * where all light is reflected, and in proportion fewer if small, or where most surface
- * is black, as below a sky. */
+ * number times two ratios, and at most the mean: its area over that of a mean leaf, and
+ * the mean reflectance of all leaves, which is small below a sky. */
 static void share_rays(struct meshing *m)
 {
     struct gather_mesh *mesh = m->mesh;

@@ -30,14 +30,15 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
     return !point_is_beside(x, &t);
 }
 
-/* Russian roulette: the path goes on, for those that end, too, with the probability of
- * the largest reflectance. The mesh's light is added where a path ends, and taken off
- * where one goes on, so rows still sum to 1. That is noise where the mesh is far from
- * right, as in the shade at the edge of a wide bright leaf, so few paths get here. Deep
- * in a gap between bright surfaces paths are long: if they ended soon with the mesh's
- * light, the mean of inside and outside, gaps would shine. Rejected: ending half of the
- * longest and giving their light to the others; the light then taken off the mesh makes
- * large rows of both signs, by which light at rho .999 is not found. */
+/* Russian roulette. The path goes on with a probability p, the largest reflectance, and
+ * then has 1 / p of its weight. One that ends gets the mesh's light; from one that goes
+ * on as much of this light is taken as its weight has grown by. So rows still sum to 1.
+ * This is noise where the mesh is far from right, as in the shade at the edge of a wide
+ * bright leaf, so the first points do without. Deep in a gap between bright surfaces
+ * paths are long: if they ended soon with the mesh's light, the mean of inside and
+ * outside, gaps would shine. Rejected: ending half of the longest and giving their light
+ * to the others; the light then taken off the mesh makes large rows of both signs, by
+ * which light at rho .999 is not found. */
 static bool survives(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
 {
@@ -85,9 +86,9 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
     return !point_is_beside(x, &t) && (r->kind == RECEIVER_PIXEL || path_ends(r, met, x));
 }
 
-/* True if a segment from x, a point of a path, finds the bright patch at `met`, and a ray
- * is not to: in pixels, if a point chosen by power on all bright patches brings no more
- * light than a ray would. (In a row the sum would no longer be 1.) */
+/* True if look_beside(), from the point x of a path, brings the light of the bright patch
+ * at `met`, and rays do not. That is so in pixels, if a point chosen by power on all
+ * bright patches brings no more than a ray. (A row would not sum to 1.) */
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {

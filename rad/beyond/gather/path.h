@@ -29,9 +29,10 @@ static inline bool path_ends(const struct receiver *r, const struct point *met,
     return vec3_dot(ray, ray) >= r->gather->near->leaves[met->patch].reach2;
 }
 
-/* True if rays from x are aimed at the bright patch around the point met; from pixels
- * even where the path goes on from there, as from the holder of a bulb: such light, found
- * by chance, is a bright speck. */
+/* True if segments from x bring the light of the bright patch around the point met, and a
+ * ray that meets it is put aside. In a row they do where a ray ends there, in a pixel
+ * also where a path goes on: light of the bulb on its holder, found by chance, is a
+ * bright speck. */
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x);
 
 /* Adds the light, times `weight`, of a path at a point met by a ray from x: the path ends

@@ -26,8 +26,8 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* A ray has met a back, and not from inside of a thing: else another ray from there meets
- * a back, too. */
+/* A ray has met a back, and counts as escaped; but not if a second one from its point,
+ * mirrored at the normal, meets a back, too: then the point is inside. */
 static void look_again(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     struct vec3 normal = r->facet.plane.normal;
@@ -129,7 +129,7 @@ static void add_variances(struct receiver *r)
     }
 }
 
-/* Adds the light of the row's paths to the leaves too near met first. `factor`: of the
+/* Adds the light of the row's paths to the leaves on which they begin. `factor`: of the
  * paths' weights, and so of the area: else leaves would be seen too bright from afar. */
 static void add_paths(struct gather_nears *near, const struct receiver *r, double factor)
 {

@@ -18,9 +18,9 @@ struct ray_sums {
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };
 
-/* What light is collected for: a row, whose terms are kept in the gather's sums; a look
- * at a leaf, whose light is compared, so only what was found counts as noise; or a
- * pixel. */
+/* What light is collected for. A row keeps its terms, in the gather's sums. A look keeps
+ * its light alone, and what its segments may have missed is not in its noise. So does a
+ * pixel, but with this noise. */
 enum receiver_kind { RECEIVER_ROW, RECEIVER_LOOK, RECEIVER_PIXEL };
 
 struct receiver {
@@ -65,7 +65,7 @@ void receiver_add_point(struct receiver *r, int32_t patch,
 void receiver_add_source(struct receiver *r, const struct rgb *weight,
                          struct rgb emission, double factor);
 
-/* Adds such light to the leaf too near by which the ray at hand arrives, if any. */
+/* Adds a lamp's light to the path of the ray at hand, if that has met a leaf too near. */
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor);
 

@@ -1,10 +1,10 @@
-/* Senders: lamps, and patches reflecting so much light that rays in all directions would
- * find them too seldom for what they bring. The final gather aims at senders.
+/* Senders, which the final gather aims at: lamps; bright patches, whose light rays in all
+ * directions would find too seldom; and panes, which send the light behind them.
  *
  * Senders are the leaves of a tree: the part of the tree of clusters and patches with
- * senders below. A node's senders lie side by side, so a search in an array of sums
- * chooses one by its power. Emitted and reflected light have a tree each, since a picture
- * gathers lamps alone; and so have panes, which send the light behind. */
+ * senders below. The senders of a node lie side by side in an array of sums, and a search
+ * there chooses one by its power. Lamps, bright patches and panes have a tree each: a
+ * picture gathers the light of lamps alone. */
 #ifndef RAD_BEYOND_GATHER_SENDERS_H
 #define RAD_BEYOND_GATHER_SENDERS_H
 

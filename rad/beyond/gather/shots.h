@@ -5,8 +5,8 @@
 #include "rad/model.h"
 
 /* Shares shots in proportion to `worth`, [count], in any unit: `shots`, [count], at least
- * 4 each, and 4 where the worth is -1, none. The sum of the others is `mean` times their
- * number at most, unless these 4 are too many; all are `mean` if all are worth 0. */
+ * 4 each, and 4 where the worth is -1, none. The others get `mean` on average at most,
+ * unless 4 are more. If all are worth 0 each gets `mean`. */
 void shots_share(const double *worth, int64_t count, int mean, int *shots);
 
 /* The same among the leaves, [count], of each space apart: `worth` and `shots`,
@@ -14,8 +14,8 @@ void shots_share(const double *worth, int64_t count, int mean, int *shots);
 void shots_share_by_space(const struct model *model, const int32_t *leaves, int64_t count,
                           const double *worth, int mean, int *shots);
 
-/* Rays of a black leaf, for the balance of power alone, whose noise most comes from rows
- * of large leaves: this part of the mean number, at most all. */
+/* Returns the rays of a black leaf: this part of the mean number, at most all. They serve
+ * the balance of power alone, most of whose noise is that of large leaves. */
 int shots_of_black(int mean, double part);
 
 #endif

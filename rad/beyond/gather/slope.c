@@ -5,9 +5,9 @@
  * with the barycentric coordinates w of x in the leaf and the means b_0, b_1, b_2 of its
  * parent's outer children: the linear function with these means. (Over the parent itself
  * s is 2.) B(x) is linear in the radiosities, too, so the row has terms for the sisters,
- * which sum to 0. Constants move light outwards at each reflection where leaves are as
- * wide as the gap between them. Where the linear function is below 0 somewhere, its slope
- * is made less.
+ * which sum to 0. If B were constant over leaves as wide as the gap between them, each
+ * reflection would move light outwards. Where the linear function is below 0 somewhere,
+ * its slope is made less.
  *
  * Rejected: B interpolated between shared corners of neighbours. Interpolation needs to
  * know over which edges light goes on smoothly, and at shadows, where interpolation
@@ -19,9 +19,9 @@
  *
  *     area * bend^2  <=  BENT * absorptance * epsilon * sum of area * (rho H)^2,
  *
- * in each band apart, since dim bands are to be right, too. Links make a mesh for the
- * brightest band, which may be too coarse by more than a level for a dim one reflected
- * more often, and where much is reflected next to an edge. */
+ * in each band apart, since dim bands are to be right, too. Links make the mesh for the
+ * brightest band. It may be too coarse by more than a level for a dim band that is
+ * reflected more often, and beside an edge where much is reflected. */
 #include "rad/beyond/gather/slope.h"
 
 #include <math.h>

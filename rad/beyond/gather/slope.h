@@ -21,9 +21,9 @@ struct gather_slope slope_of(const struct forest *forest, const uint8_t *cut,
  * a parent. */
 struct rgb light_by_parent(const struct forest *forest, int32_t patch);
 
-/* Returns how many times a leaf with an exact row is to be split: 0, or once if in any
- * band B bends more over the leaf than allowed, or more often if a level is not enough
- * for the bend. `all`: the sum of area times the square of reflected radiosity over all
+/* Returns how many levels deep a leaf with an exact row is to be split: 0 if in no band B
+ * bends more over the leaf than allowed, else 1, or more if bends over its children are
+ * too large. `all`: the sum of area times the square of reflected radiosity over all
  * leaves. */
 int slope_splits(const struct model *model, int32_t leaf, const struct rgb *all);
 

@@ -15,14 +15,14 @@ struct sender_point {
     double share; /* form factor of the sender over the probability of its choice, 1 */
 };
 
-/* Chooses a sender by the cut of a patch beside the leaf, and a point of it above the
- * horizon of x, by hashes. False if the point is not visible, or its light is brought by
- * a pane on the way. */
+/* Chooses a sender for the point x of a path, by the cut of its patch, and a point of the
+ * sender above the horizon of x, by hashes. False if the point is not visible, or its
+ * light is brought by a pane on the way. */
 bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
                             struct vec3 normal, int32_t patch, uint64_t seed,
                             struct sender_point *target);
 
-/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf. */
+/* Adds `weight` times the light of one lamp at the point x of a path on this patch. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                          int32_t patch, const struct rgb *weight, uint64_t seed);
 
