@@ -11,17 +11,17 @@
  *
  * The gather estimates the two parts (rad/beyond/gather/claim.c). Where E^2 exceeds the
  * sum of their squares by more than chance, the mesh has the surplus. If the claim is
- * above the goal, the next round brings E to AIM of it, which leaves room for the
- * deviation, with both parts alike unless one is small already: noise falls like N^-0.5
- * and costs N, the mesh's part falls like the third root of epsilon, and leaves grow like
- * the square root of 1 / epsilon, so both cost about as much. The links go on from where
- * they are, from their own solution: a run is the same whether it is resumed before the
- * gather or never interrupted. Leaves that the gather has split stay split.
+ * above the goal, the next round brings E to AIM goals, which leaves room for the
+ * deviation. Both parts become alike, unless one is small already, as both cost about as
+ * much: noise falls like N^-0.5 and costs N; the mesh's part falls like the third root of
+ * epsilon, and leaves grow like the square root of 1 / epsilon. The links go on from
+ * where they are, from their own solution: a run is the same whether it is resumed before
+ * the gather or never interrupted. Leaves that the gather has split stay split.
  *
- * The limit in the way is named. The mesh is at its end where memory, iterations,
- * --max-level or --min-area are, or where epsilon was lowered much without effect; rays,
- * at their largest number, or where rows do not fit into memory. Then the other part is
- * brought down to half of the one that stays, and the answer is delivered.
+ * The mesh becomes no finer where memory, iterations, --max-level or --min-area keep it
+ * so, or where a much lower epsilon had no effect. Rays become no more at their largest
+ * number, or where rows do not fit into memory. Then the other part is brought down to
+ * half of the one that stays, the answer is delivered, and the limit is named.
  *
  * Rejected: aiming by slopes measured between rounds. With two or three rounds slopes are
  * mostly noise. */

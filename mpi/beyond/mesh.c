@@ -2,9 +2,9 @@
  *
  * Roots that may have exact rows are found first: nothing stands between such a root and
  * the roots it faces. Exact rows cost much, and their mesh is the links', which is good
- * where nothing casts shadows: so there are exact rows only if half of the scene's area
- * is open. Proofs cost much as well, and most scenes are not open: segments show first
- * where a root is not, and the search ends once half of the area cannot be had.
+ * only where nothing casts shadows. So there are exact rows only if half of the scene's
+ * area is open. Proofs cost much as well, and most scenes are not open. So segments come
+ * first, which show roots that are not; and the search ends once half is out of reach.
  *
  * Then all ranks look at leaves, round by round, between which the mesh splits leaves.
  * The looks are dealt by the work predicted for them, and all ranks learn all looks. */

@@ -13,20 +13,19 @@
  *     E^2 = mean over draws of  A_i (B_i - r)(B_i - s) / q_i  /  sum of A B^2
  *
  * is the mean square error (each space counts by its leaves, relative to its own light);
- * its scatter from draw to draw tells the deviation of the
- * mean. A given number of draws has no bias. To end when draws scatter little has some
- * where few leaves have most of the error: in trials, E^2 is a quarter too small if one
- * draw in 200 has half of it. A third of q goes by area, one by area times the square of
- * the reflected radiosity, one by area times the square of the error estimated by the
- * gather itself: large, bright or seemingly bad leaves are drawn often, and errors of the
- * estimate are found. Draws are spread evenly over the leaves in the order of
- * forest_order(), so over the scene; BATCH at a time, each batch between those before
- * (multiples of the golden ratio).
+ * its scatter from draw to draw tells the deviation of the mean. A fixed number of draws
+ * has no bias. Ending when draws scatter little has some, if few leaves have most of the
+ * error: in trials, E^2 is a quarter too small if one draw in 200 has half of it. A third
+ * of q goes by area, one by area times the square of the reflected radiosity, one by area
+ * times the square of the error estimated by the gather itself: large, bright or
+ * seemingly bad leaves are drawn often, and errors of the estimate are found. Draws are
+ * spread evenly over the leaves in the order of forest_order(), so over the scene; BATCH
+ * at a time, each batch between those before (multiples of the golden ratio).
  *
  * The same draws tell whether errors of leaves relative to their own light are as
- * claimed: by the sums of (B - r)(B - s) and of the claimed squares, each leaf over the
- * square of its light and 1 / q. Where more than all of the light is claimed, a leaf
- * counts as much less.
+ * claimed. The sum of (B - r)(B - s) is held against the sum of the claimed squares, each
+ * over q and the square of the leaf's light. A leaf that claims more than all of its
+ * light counts as much less.
  *
  * Paths have the answer for their guess: their mean is the truth all the same, and in
  * bright rooms, where paths are long, nearly all noise is gone. (A cube of rho .999 took

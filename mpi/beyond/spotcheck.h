@@ -10,8 +10,8 @@ struct spotcheck {
                        reflected radiosity, possibly below 0. Unbiased, but for the end: a
                        check may miss leaves too few to be drawn */
     double doubt;   /* standard deviation of `square` */
-    double own;     /* mean square error of leaves, each relative to its own light, over
-                       the one claimed; with one standard deviation */
+    double own;     /* mean square error of leaves, each relative to its own light, plus
+                       one standard deviation, in parts of the one claimed */
     int64_t leaves; /* checked */
     int64_t paths;  /* traced */
     int64_t rays;   /* traced */

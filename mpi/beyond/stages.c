@@ -1,9 +1,9 @@
 /* Dealing in stages, by counts: factoring (Hummel, Schonberg and Flynn, 1992).
  *
  * Some rows take seven times the work predicted for them, so ranks with the same
- * predicted work differ by some percent. In a stage all items left are dealt, and a rank
+ * predicted work differ by some percent. In a stage all items left are dealt. A rank
  * stops after nine tenths of the mean work expected, whatever was predicted for its own
- * items. The others, few and light, are dealt anew. A stage takes one exchange.
+ * items. The rest, few and light, is dealt anew. A stage takes one exchange.
  *
  * Items are done by octaves of predicted work: a heavy one at the end keeps all ranks
  * waiting. Within an octave items keep their order, for leaves of a root share proofs. */

@@ -13,12 +13,12 @@ struct stages {
     const int64_t *work; /* [count] predicted for each item, in any unit, at least 1 */
     int64_t count;
     int *counts;       /* [ranks] items done by a rank */
-    int *at;           /* [ranks] place of its first one, if those of rank 0 come first */
-    int32_t *place;    /* [count] of each item; a rank's own in the order of its work */
+    int *at;           /* [ranks] place of a rank's first item */
+    int32_t *place;    /* [count] of each item: rank by rank, in the order of work */
     int *rank_of;      /* [count] rank that does an item */
     int32_t *items;    /* [left] not done yet, heavy ones first */
     int64_t left;
-    double all, done;  /* work predicted for all items, and for those done, or so */
+    double all, done;  /* work predicted for all items, and for those done, about */
     double ratio;      /* tests that items took for the work predicted, in a stage */
 };
 

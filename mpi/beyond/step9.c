@@ -24,8 +24,8 @@
 
 enum { STEPS_MOST = 500 };
 
-/* Turns, at most; the last one only finds what is left. Most end at five, when one
- * changes nothing. In gaps of rho .999 each leaves .6 of the error. */
+/* Turns, at most; the last one only finds what is left. The fifth mostly changes nothing,
+ * and ends them. In gaps of rho .999 each turn leaves .6 of the error. */
 enum { TURNS_MOST = 40 };
 
 /* The part of the residual that each turn leaves: the factors of the next turn change the
@@ -87,8 +87,8 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
 
 /* --- rows --- */
 
-/* Collective. All ranks learn what the rows have met: leaves too near, visible shares,
- * and which spaces are closed. */
+/* Collective. All ranks learn what the rows have met: leaves too near, the shares of
+ * leaves outside of things, and which spaces are closed. */
 static void share_met(struct gathering *g)
 {
     enum { EACH = (int)(sizeof *g->gather->near->items / sizeof(int64_t)) };
@@ -138,8 +138,8 @@ static bool make_rows(struct gathering *g)
 
 /* --- light --- */
 
-/* Collective. Irradiances of own leaves, W/m^2, for their radiosities `b`; with the
- * source and what lamps lack if `lamps`; in a closed scene as much as leaves. */
+/* Collective. Finds the irradiances `h` of own leaves, W/m^2, for their radiosities `b`.
+ * `lamps`: `b` has emission, `h` the source. Closed spaces lose none. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
@@ -179,8 +179,8 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
     }
 }
 
-/* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
- * `b`, which becomes the answer but where `b` is below 0. `h` and `r`: buffers. */
+/* Collective. One turn: finds how missing light is spread, by `answer`; solves for `b`;
+ * makes `answer` this solution, without values below 0. `h` and `r`: buffers. */
 static struct bicgstab take_turn(struct gathering *g, const double *weights,
                                  struct bicgstab_end end, struct rgb *b, struct rgb *h,
                                  struct rgb *r, struct rgb *answer)
@@ -246,8 +246,8 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= model->criterion.tolerance;
 }
 
-/* Collective. What the light of open spaces may be off by, of irradiances `h` for
- * radiosities `b`. */
+/* Collective. Finds by which part the light of open spaces may be off. `h`: irradiances
+ * for the radiosities `b`. `reflected`, `again`: buffers. */
 static void find_unsure(struct gathering *g, const struct rgb *h, const struct rgb *b,
                         struct rgb *reflected, struct rgb *again)
 {

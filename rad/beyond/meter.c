@@ -1,13 +1,13 @@
 /* A light meter.
  *
  * H at a point is a plain row of form factors times the radiosities of the solution:
- * cosine rays find leaves, each with its mean B. Lamps, small and bright, would be noise
- * in it: the factor of each lamp is exact (Lambert), and segments to points on it tell
- * its visible share, weighted by the kernel of each. Facets of a sky are lamps.
+ * cosine rays find leaves, each with its mean B. Lamps, small and bright, would make it
+ * noisy. So the factor of each lamp is exact (Lambert), and segments to points on it tell
+ * the share that is seen, each weighted by its kernel. Facets of a sky are lamps.
  *
- * The rays are BATCHES sequences of their own, so the scatter of the answers by one
- * sequence is the deviation of their mean. The errors of the leaves met by rays come on
- * top: their mean, for the leaves of a wall may be off together.
+ * Rays come in BATCHES sequences. Each gives an answer, and the scatter of these tells
+ * the deviation of their mean. On top comes the mean error of the leaves met by rays: not
+ * less than this mean, since all leaves of a wall may be off together.
  *
  * The rows of the final gather (rad/beyond/gather/row.c) take a tenth of the rays, as
  * leaves of a region share what they learn of its lamps; a point in the air has no
@@ -32,7 +32,7 @@ static const double BOUND = 2.365;
  * six digits. */
 static const double HEIGHT = 0x1p-22;
 
-/* The part of a segment within which nothing is in the way. */
+/* What is met beyond this part of a segment is the lamp itself, or lies on it. */
 static const double WHOLE = 1.0 - 1e-6;
 
 struct meter meter_make(const struct forest *forest, const struct octree *octree,

@@ -1,14 +1,14 @@
 /* Panes.
  *
- * Few rays find a window by chance, and each brings much light, so a receiver aims at
- * windows. A segment to a point of a pane goes on to sky, ground or the next room behind,
- * and rays in such directions are put aside (gather/rays.c). Of several panes on a
- * segment the first one aimed at brings the light. Light crossing panes is multiplied by
- * the transmittance of each; light reflected by a pane is added.
+ * Few rays find a window by chance, and each brings much light; so a receiver aims at
+ * panes. A segment to a point of a pane goes on to sky, ground or the next room behind.
+ * Rays that cross the pane by chance are put aside (gather/rays.c). Where several panes
+ * are on the way, the first one aimed at brings the light. Light crossing panes is
+ * multiplied by the transmittance of each; light reflected by a pane is added.
  *
- * A pane has a root on each side, with the share d of its reflectance. As it blocks
- * nothing, its rows are those of two leaves back to back. A face modelled from both sides
- * is one pane: each face is met on its front alone. */
+ * A pane has a root on each side, with d times its reflectance. It blocks nothing, so its
+ * rows are those of two leaves back to back. Of a face modelled from both sides each is
+ * met on its front alone, and the two count as one pane. */
 #include "rad/beyond/panes.h"
 
 #include "geom/alloc.h"

@@ -24,8 +24,8 @@ struct panes *panes_create(const struct scene *scene);
 void panes_destroy(struct panes *panes); /* NULL: none */
 
 /* Finds the light sent by panes, by the octree of blockers and the radiosities of a
- * forest: the same on every rank. It deals segments. The light on the near side counts
- * like that behind: a pane to a dark room takes directions off the light of this one. */
+ * forest: the same on every rank. Segments are dealt by it. Both sides count alike: a
+ * pane to a dark room is aimed at, as this room's light is not there. */
 void panes_look(struct panes *panes, const struct octree *octree,
                 const struct forest *forest);
 
@@ -33,7 +33,7 @@ void panes_look(struct panes *panes, const struct octree *octree,
 struct pane_walk {
     struct vec3 at, direction; /* of length 1 */
     double left;               /* of its length, scene units */
-    int32_t root;              /* of the pane crossed last: its side met */
+    int32_t root;              /* side met of the pane crossed last; -1: none yet */
 };
 
 /* A walk from one point to another, both just above their surfaces. */
@@ -50,8 +50,8 @@ void pane_filter(const struct scene *scene, int32_t root, struct rgb *light);
 void panes_filter(const struct panes *panes, struct pane_walk walk, struct rgb *light,
                   struct octree_counts *counts);
 
-/* Does the same with the share of the light behind, and adds to `light` what each pane
- * sends by the radiosities of a forest, times the share so far. */
+/* Does so with `share`, of the light behind, and adds to `light` the radiosity of each
+ * pane itself, times the share of light that has come so far. */
 void panes_cross(const struct panes *panes, struct pane_walk walk,
                  const struct forest *forest, struct rgb *share, struct rgb *light,
                  struct octree_counts *counts);
@@ -61,8 +61,8 @@ void panes_cross(const struct panes *panes, struct pane_walk walk,
 int32_t pane_leaf(const struct forest *forest, const struct pane_walk *walk,
                   double weight[3]);
 
-/* True if the walk crosses a pane aimed at, as all are that send light, other than that
- * of the root `but`, which may be -1. */
+/* True if the walk crosses a pane aimed at, other than the root `but`, which may be -1.
+ * All panes that send light are aimed at. */
 bool panes_put_aside(const struct panes *panes, struct pane_walk walk, int32_t but,
                      struct octree_counts *counts);
 

@@ -1,9 +1,9 @@
 /* Finding spaces.
  *
- * A few rays from each root connect roots: what they connect is a space. Half of those
- * from a pane leave its other side, and so connect the spaces that it parts. Rays prove
- * nothing: a space may have a gap that none has found. So a space tells how fine its
- * light is to be, and not that no other light gets in. */
+ * Four rays from each root connect it to others. Roots so connected are a part of the
+ * scene. Half of those from a pane leave its other side, and so connect the spaces that
+ * it parts. Rays prove nothing: a space may have a gap that none has found. So a space
+ * says how fine its light is to be. It does not say that no other light gets in. */
 #include "rad/beyond/spaces.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "geom/stop.h"
 #include "rad/beyond/sample.h"
 
-/* The part counted of the light of a closed scene, spread evenly: in ordinary rooms less
+/* The part that counts of light spread evenly over a scene. In ordinary rooms it is less
  * than the emitted light, in white ones many times as much. */
 static const double LASTING = 0.1;
 
@@ -75,8 +75,8 @@ static int32_t part_of(int32_t *up, int32_t root)
     return root;
 }
 
-/* The roots of a part are taken to be outside if too few to enclose a space, and emit
- * nothing there: the top of a lamp below a ceiling does not. */
+/* A part with too few roots to enclose a space is taken to be outside. Its light counts
+ * nowhere, as that of the top of a lamp below a ceiling. */
 static void join_small_parts(struct spaces *spaces, int32_t all)
 {
     enum { TETRAHEDRON = 4 };

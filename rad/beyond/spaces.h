@@ -14,12 +14,12 @@
 #include "octree/octree.h"
 
 struct spaces {
-    int32_t *part;  /* [roots + 1] the same for roots that rays connect, and for the
-                       outside, which comes last: 0 .. roots */
+    int32_t *part;  /* [roots + 1] a number, 0 .. roots, of each root and, last, of the
+                       outside: the same where rays connect */
     int32_t *of;    /* [roots] the number of a root's space */
     double *light;  /* [count] of all light the part in a space, 1; space 0 has most */
-    double *area;   /* [count] of the surfaces in a space, those of spaces without a lamp
-                       and of a sky left out if there are several, square scene units */
+    double *area;   /* [count] of the surfaces of a space but a sky and, if there are
+                       several spaces, parts without a lamp, square scene units */
     int32_t count;  /* at least 1 */
 };
 
@@ -43,8 +43,8 @@ static inline double space_dimness(const struct spaces *spaces, uint32_t root)
     return spaces->light[0] / spaces->light[spaces->of[root]];
 }
 
-/* The light of the scene, W, areas in square scene units: as emitted (of a sky what
- * enters) or, where light is reflected for long, a part of it spread evenly. */
+/* The light of the scene, W in square scene units: the power of lamps (of a sky what
+ * enters); or, if more, a tenth of all light when spread evenly. */
 double scene_light(const struct scene *scene);
 
 #endif
