@@ -1,6 +1,6 @@
 /* Finding spaces.
  *
- * Four rays from each root connect it to others. Roots so connected are a part of the
+ * A few rays from each root connect it to others. Roots so connected are a part of the
  * scene. Half of those from a pane leave its other side, and so connect the spaces that
  * it parts. Rays prove nothing: a space may have a gap that none has found. So a space
  * says how fine its light is to be. It does not say that no other light gets in. */

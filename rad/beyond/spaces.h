@@ -23,8 +23,8 @@ struct spaces {
     int32_t count;  /* at least 1 */
 };
 
-/* Rays from each root, which tell its space: more where there are few roots, so that a
- * door ajar is found. */
+/* Returns the number of rays from each root that tell its space: 4, or more where there
+ * are few roots, so that a door ajar is found. */
 int space_rays(const struct scene *scene);
 
 /* [space_rays() for each of the roots first .. end - 1] where its rays end: a root, the

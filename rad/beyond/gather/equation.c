@@ -41,8 +41,7 @@
 /* A leaf is seen brighter than its mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0x1p-6;
 
-/* Leaves with less than this part of the mean radiosity are solved for as if this
- * bright. */
+/* Leaves with less than this part of the mean radiosity weigh as if they had so much. */
 static const double DARK = 1e-3;
 
 /* Arrays have room for all leaves; what is not used of them takes no memory. */
