@@ -1,5 +1,5 @@
 # Pictures of a renderer beside those of `make corpus`: the right one passes at four
-# standard errors, and each of twelve slips is seen. The renderer is the path tracer, by
+# standard errors, and each of eleven slips is seen. The renderer is the path tracer, by
 # 64 paths a pixel, on a scene with the slip in it.
 . tests/tap.sh
 
