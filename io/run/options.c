@@ -372,7 +372,7 @@ static const struct option OPTIONS[] = {
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
     {"--ke", "radiosity|radiance", "Blender: 2nd", CHOICE(ke, "radiosity|radiance")},
     {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
-    {"--sky", "B|R,G,B", "around the scene", set_sky, FIELD(sky), 0, 1e30, NULL},
+    {"--sky", "B|overcast,L|clear,L|FILE", "", set_sky, FIELD(sky), 0, 1e30, NULL},
     {"--sun", "X,Y,Z,W", "", set_sun, FIELD(sky), 0, 1e30, NULL},
     {"--save-links", "F", "", TEXT(save_links)},
     {"--load-links", "F", "", TEXT(load_links)},
