@@ -62,15 +62,6 @@ static struct estimate mean_of(struct estimate sums, int n)
     return (struct estimate){h, (sums.variance / n - h * h) / n};
 }
 
-/* The leaf at a point of a root. */
-static int32_t leaf_at(const struct forest *forest, int32_t root, double weight[3])
-{
-    int32_t patch = root;
-    while (!patch_is_leaf(&forest->patches[patch]))
-        patch = forest->patches[patch].children + triangle_child_at(weight);
-    return patch;
-}
-
 /* Step 1: H by n rays. Without `lamps` their emission does not count. */
 static struct estimate by_rays(const struct place *at, int n, bool lamps)
 {

@@ -166,7 +166,7 @@ static void add_error(const struct renderer *renderer, const struct pixel_roots 
     double most = 0.0, error = 0.0;
     for (int i = 0; i < count; i++) {
         double w[3] = {view->weights[i].x, view->weights[i].y, view->weights[i].z};
-        int32_t leaf = shading_leaf_at(forest, view->roots[i], w);
+        int32_t leaf = leaf_at(forest, view->roots[i], w);
         error += DEVIATION * (double)renderer->error[leaf];
     }
     for (int c = 0; c < BANDS; c++)
@@ -271,7 +271,7 @@ static int rays_for_all(const struct renderer *renderer, const struct pixel_root
     if (!shading)
         return renderer->rays;
     enum shade shade =
-        shading->shades[shading_leaf_at(shading->forest, view->roots[i], w)];
+        shading->shades[leaf_at(shading->forest, view->roots[i], w)];
     return shade == SHADE_SMOOTH  ? 0
            : shade == SHADE_STEEP ? STEEP * renderer->rays
                                   : (renderer->rays + COVERED - 1) / COVERED;

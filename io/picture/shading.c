@@ -48,6 +48,7 @@
 #include "io/picture/surface.h"
 #include "io/picture/vertices.h"
 #include "rad/beyond/gather/gather.h"
+#include "rad/beyond/sample.h"
 
 /* --- tiles of leaves with T-vertices --- */
 
@@ -440,20 +441,11 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading);
 }
 
-int32_t shading_leaf_at(const struct forest *forest, int32_t root, double weight[3])
-{
-    const struct patch *patches = forest->patches;
-    int32_t p = root;
-    while (!patch_is_leaf(&patches[p]))
-        p = patches[p].children + triangle_child_at(weight);
-    return p;
-}
-
 struct rgb shading_at(const struct shading *shading, const struct rgb *values,
                       int32_t root, const double weight[3])
 {
     double w[3] = {weight[0], weight[1], weight[2]};
-    int32_t p = shading_leaf_at(shading->forest, root, w);
+    int32_t p = leaf_at(shading->forest, root, w);
     if (shading->flat)
         return values[shading->corners[3 * (int64_t)p]];
     struct tile tile = whole_leaf(shading, values, p), inner;

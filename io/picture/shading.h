@@ -47,9 +47,6 @@ struct shading *shading_create(const struct forest *forest, const struct octree 
 struct shading *shading_create_flat(const struct forest *forest);
 void shading_destroy(struct shading *shading);
 
-/* Returns the leaf at a point of a root. Makes barycentric coordinates the leaf's. */
-int32_t shading_leaf_at(const struct forest *forest, int32_t root, double weight[3]);
-
 /* Interpolates these values at vertices there: shading->values, or shading->lamps. */
 struct rgb shading_at(const struct shading *shading, const struct rgb *values,
                       int32_t root, const double weight[3]);

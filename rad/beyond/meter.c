@@ -119,18 +119,6 @@ static struct rgb visible_share(const struct meter *meter, struct vec3 x,
     return seen;
 }
 
-/* The leaf of a root at a point of it. */
-static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 at)
-{
-    struct triangle t = scene_root_triangle(forest->scene, root);
-    double weight[3];
-    int32_t patch = root;
-    triangle_weights(&t, at, weight);
-    while (!patch_is_leaf(&forest->patches[patch]))
-        patch = forest->patches[patch].children + triangle_child_at(weight);
-    return patch;
-}
-
 /* Returns the light of all but lamps by a sequence of rays. Adds the error of the leaves
  * met to `*error`. */
 static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec3 normal,
@@ -141,7 +129,7 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
     struct sequence sequence = sequence_start(seed);
     struct vec3 along = direction_along(normal);
     struct rgb sum = {{0.0, 0.0, 0.0}};
-    double u[SEQUENCE_DIMENSIONS];
+    double u[SEQUENCE_DIMENSIONS], at[3];
     for (int i = 0; i < rays; i++) {
         struct octree_hit hit;
         sequence_point(&sequence, (uint32_t)i, u);
@@ -154,7 +142,8 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
         panes_cross(meter->panes, walk, forest, &weight, &sum, meter->counts);
         if (root < 0)
             continue;
-        int32_t leaf = leaf_at(forest, root, vec3_add(x, vec3_scale(d, far)));
+        struct vec3 y = vec3_add(x, vec3_scale(d, far));
+        int32_t leaf = leaf_under(forest, root, y, at);
         struct rgb emission = scene_root_material(scene, root)->emission;
         struct rgb reflected = rgb_sub(forest->radiosity[leaf], emission);
         for (int c = 0; c < BANDS; c++)

@@ -92,26 +92,15 @@ void panes_filter(const struct panes *panes, struct pane_walk walk, struct rgb *
         pane_filter(panes->scene, walk.root, light);
 }
 
-int32_t pane_leaf(const struct forest *forest, const struct pane_walk *walk,
-                  double weight[3])
-{
-    struct triangle t = scene_root_triangle(forest->scene, walk->root);
-    int32_t patch = walk->root;
-    triangle_weights(&t, walk->at, weight);
-    while (!patch_is_leaf(&forest->patches[patch]))
-        patch = forest->patches[patch].children + triangle_child_at(weight);
-    return patch;
-}
-
 void panes_cross(const struct panes *panes, struct pane_walk walk,
                  const struct forest *forest, struct rgb *share, struct rgb *light,
                  struct octree_counts *counts)
 {
     while (panes && panes_next(panes, &walk, counts)) {
         double weight[3];
-        struct rgb sent = forest->radiosity[pane_leaf(forest, &walk, weight)];
+        int32_t leaf = leaf_under(forest, walk.root, walk.at, weight);
         for (int c = 0; c < BANDS; c++)
-            light->band[c] += share->band[c] * sent.band[c];
+            light->band[c] += share->band[c] * forest->radiosity[leaf].band[c];
         pane_filter(panes->scene, walk.root, share);
     }
 }

@@ -56,11 +56,6 @@ void panes_cross(const struct panes *panes, struct pane_walk walk,
                  const struct forest *forest, struct rgb *share, struct rgb *light,
                  struct octree_counts *counts);
 
-/* The leaf of a forest that the last pane crossed has there. Makes `weight` the
- * barycentric coordinates in the leaf. */
-int32_t pane_leaf(const struct forest *forest, const struct pane_walk *walk,
-                  double weight[3]);
-
 /* True if the walk crosses a pane aimed at, other than the root `but`, which may be -1.
  * All panes that send light are aimed at. */
 bool panes_put_aside(const struct panes *panes, struct pane_walk walk, int32_t but,

@@ -326,12 +326,8 @@ static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct dr
 /* The guess at the reflected radiosity where a path arrives. */
 static struct rgb guess_at(const struct forest *forest, const struct arrival *q)
 {
-    struct triangle t = scene_root_triangle(forest->scene, q->root);
     double weight[3];
-    int32_t patch = q->root;
-    triangle_weights(&t, q->x, weight);
-    while (!patch_is_leaf(&forest->patches[patch]))
-        patch = forest->patches[patch].children + triangle_child_at(weight);
+    int32_t patch = leaf_under(forest, q->root, q->x, weight);
     return rgb_sub(forest->radiosity[patch], forest_material(forest, patch)->emission);
 }
 

@@ -65,3 +65,19 @@ int32_t root_met(const struct scene *scene, const struct octree *octree,
         return outside;
     return scene_root_on(scene, hit.triangle, hit.front);
 }
+
+int32_t leaf_at(const struct forest *forest, int32_t root, double weight[3])
+{
+    int32_t patch = root;
+    while (!patch_is_leaf(&forest->patches[patch]))
+        patch = forest->patches[patch].children + triangle_child_at(weight);
+    return patch;
+}
+
+int32_t leaf_under(const struct forest *forest, int32_t root, struct vec3 at,
+                   double weight[3])
+{
+    struct triangle t = scene_root_triangle(forest->scene, root);
+    triangle_weights(&t, at, weight);
+    return leaf_at(forest, root, weight);
+}

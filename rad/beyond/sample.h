@@ -6,6 +6,7 @@
 
 #include "geom/scene.h"
 #include "octree/octree.h"
+#include "rad/patch.h"
 
 /* A ray: one from a surface begins just above. */
 struct half_line {
@@ -35,6 +36,14 @@ struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64
 int32_t root_met(const struct scene *scene, const struct octree *octree,
                  const struct half_line *ray, int32_t outside,
                  struct octree_counts *counts);
+
+/* The leaf of a root at its point with these barycentric coordinates, which become those
+ * in the leaf. */
+int32_t leaf_at(const struct forest *forest, int32_t root, double weight[3]);
+
+/* The same at a point in space: finds its coordinates. */
+int32_t leaf_under(const struct forest *forest, int32_t root, struct vec3 at,
+                   double weight[3]);
 
 /* True if a sender's middle is nearer to a point than the sender's radius: rays from the
  * point find such a sender often enough, and no segments are aimed there. */

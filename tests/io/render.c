@@ -5,6 +5,7 @@
 
 #include "geom/alloc.h"
 #include "geom/lambert.h"
+#include "rad/beyond/sample.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
@@ -234,7 +235,7 @@ static void test_strip(double width, bool is_narrow)
     for (int i = 1; i < 20; i++)
         worst = fmax(worst,
                      fabs(shown(&s, shading, floor, point(0.05 * i, 0.02, 0)) - 1.0));
-    leaf = shading_leaf_at(s.solver->model.forest, floor, (double[]){1.0, 0.0, 0.0});
+    leaf = leaf_at(s.solver->model.forest, floor, (double[]){1.0, 0.0, 0.0});
     bool covered = shading->shades[leaf] == SHADE_COVERED;
     tap_ok(worst > 0.0 && worst <= (is_narrow ? 0.02 : 0.015) && covered == is_narrow,
            "a strip of floor beside a box is even within %.1e", worst);

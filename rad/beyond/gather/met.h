@@ -4,6 +4,7 @@
 #define RAD_BEYOND_GATHER_MET_H
 
 #include "rad/beyond/gather/receiver.h"
+#include "rad/beyond/sample.h"
 
 struct point {
     int32_t root;
@@ -15,13 +16,7 @@ struct point {
 /* Finds the leaf of its root that the point lies on. */
 static inline void find_leaf(const struct forest *forest, struct point *point)
 {
-    struct triangle t = scene_root_triangle(forest->scene, point->root);
-    triangle_weights(&t, point->at, point->weight);
-    point->patch = point->root;
-    while (!patch_is_leaf(&forest->patches[point->patch])) {
-        int k = triangle_child_at(point->weight);
-        point->patch = forest->patches[point->patch].children + k;
-    }
+    point->patch = leaf_under(forest, point->root, point->at, point->weight);
 }
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };

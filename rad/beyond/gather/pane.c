@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "rad/beyond/sample.h"
+
 struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
                                struct vec3 direction, enum met met,
                                const struct point *point)
@@ -36,7 +38,7 @@ void receiver_cross(struct receiver *r, struct pane_walk walk, struct rgb *weigh
     struct final_gather *g = r->gather;
     while (panes_next(g->aims->panes, &walk, &g->model->counts)) {
         double at[3];
-        int32_t leaf = pane_leaf(g->model->forest, &walk, at);
+        int32_t leaf = leaf_under(g->model->forest, walk.root, walk.at, at);
         if (rgb_sum(forest_material(g->model->forest, leaf)->reflectance) > 0.0)
             receiver_add_point(r, leaf, &g->near->leaves[leaf].slope, at, weight);
         pane_filter(g->model->scene, walk.root, weight);
