@@ -124,6 +124,27 @@ static inline void rgb_add(struct rgb *sum, double weight, struct rgb colour)
         sum->band[c] += weight * colour.band[c];
 }
 
+/* Band by band: a b, and factor a. */
+static inline struct rgb rgb_times(struct rgb a, struct rgb b)
+{
+    for (int c = 0; c < BANDS; c++)
+        a.band[c] *= b.band[c];
+    return a;
+}
+
+static inline struct rgb rgb_scale(struct rgb a, double factor)
+{
+    for (int c = 0; c < BANDS; c++)
+        a.band[c] *= factor;
+    return a;
+}
+
+/* The same in all bands. */
+static inline struct rgb rgb_grey(double value)
+{
+    return (struct rgb){{value, value, value}};
+}
+
 static inline double rgb_sum(struct rgb c)
 {
     return c.band[0] + c.band[1] + c.band[2];
@@ -132,6 +153,12 @@ static inline double rgb_sum(struct rgb c)
 static inline double rgb_mean(struct rgb c)
 {
     return rgb_sum(c) / BANDS;
+}
+
+/* The largest band. */
+static inline double rgb_most(struct rgb c)
+{
+    return real_max(c.band[0], real_max(c.band[1], c.band[2]));
 }
 
 /* Sum over bands of the products. */

@@ -223,7 +223,7 @@ static void trace_batch(struct checking *c, int batch)
 /* The square of a leaf's deviation, relative to its reflected light `b`. */
 static double claim_of(const struct checking *c, int32_t leaf, struct rgb b)
 {
-    double most = fmax(b.band[0], fmax(b.band[1], b.band[2]));
+    double most = rgb_most(b);
     double error = (double)c->solver->beyond->answer->error[leaf];
     double claim = claim_deviation(error) / most;
     return most > 0.0 ? claim * claim : 0.0;

@@ -173,9 +173,8 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
     struct gathering *g = context;
     irradiances(g, x, false, y);
     for (int64_t i = 0; i < g->equation.count; i++) {
-        const struct material *m = equation_material(&g->equation, i);
-        for (int c = 0; c < BANDS; c++)
-            y[i].band[c] = x[i].band[c] - m->reflectance.band[c] * y[i].band[c];
+        struct rgb rho = equation_material(&g->equation, i)->reflectance;
+        y[i] = rgb_sub(x[i], rgb_times(rho, y[i]));
     }
 }
 
@@ -314,10 +313,9 @@ static void share_answer(struct gathering *g, const struct rgb *b, const double 
     for (int64_t k = 0; k < g->mesh.count; k++)
         forest->radiosity[g->mesh.leaves[g->leaf[k]]] = g->all[k];
     for (size_t i = 0; i < count; i++)
-        for (int c = 0; c < BANDS; c++)
-            own_values(g)[i].band[c] =
-                equation_material(e, (int64_t)i)->reflectance.band[c] *
-                g->gather->rows[i].straight.band[c];
+        own_values(g)[i] =
+            rgb_times(equation_material(e, (int64_t)i)->reflectance,
+                      g->gather->rows[i].straight);
     share_values(g);
     for (int64_t k = 0; k < g->mesh.count; k++)
         answer->straight[g->mesh.leaves[g->leaf[k]]] = g->all[k];

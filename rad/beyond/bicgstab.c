@@ -74,8 +74,7 @@ static double residual_of(const struct vectors *z, const struct rgb *x)
 static void add(struct rgb *y, const struct rgb *x, struct rgb factor, int64_t count)
 {
     for (int64_t i = 0; i < count; i++)
-        for (int c = 0; c < BANDS; c++)
-            y[i].band[c] += factor.band[c] * x[i].band[c];
+        rgb_add(&y[i], 1.0, rgb_times(factor, x[i]));
 }
 
 /* a / b, or 0 where the quotient is infinite, undefined or huge. */

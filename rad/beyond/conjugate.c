@@ -57,7 +57,7 @@ static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
                      double row)
 {
     struct rgb rho = forest_material(forest, leaf)->reflectance;
-    double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
+    double largest = rgb_most(rho);
     double reflected = largest * cap_of(largest, row);
     forest->caps[leaf] = cap_of(largest, row);
     if (!(largest > 0.0))

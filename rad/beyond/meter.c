@@ -106,7 +106,7 @@ static struct rgb visible_share(const struct meter *meter, struct vec3 x,
         sequence_point(&sequence, (uint32_t)i, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);
         double kernel = point_kernel(x, normal, y, facing);
-        struct rgb weight = {{kernel, kernel, kernel}};
+        struct rgb weight = rgb_grey(kernel);
         above += kernel > 0.0;
         all += kernel;
         if (!(kernel > 0.0) || !sees(meter, x, y, lamp))
@@ -137,7 +137,7 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
         bool met = octree_first_hit(meter->octree, x, d, false, &hit, meter->counts);
         int32_t root = met ? scene_root_on(scene, hit.triangle, hit.front) : -1;
         double far = root >= 0 ? distance_to(scene, root, x, d) : HUGE_VAL;
-        struct rgb weight = {{1.0 / rays, 1.0 / rays, 1.0 / rays}};
+        struct rgb weight = rgb_grey(1.0 / rays);
         struct pane_walk walk = {x, d, far, -1};
         panes_cross(meter->panes, walk, forest, &weight, &sum, meter->counts);
         if (root < 0)
@@ -146,8 +146,7 @@ static struct rgb read_rest(const struct meter *meter, struct vec3 x, struct vec
         int32_t leaf = leaf_under(forest, root, y, at);
         struct rgb emission = scene_root_material(scene, root)->emission;
         struct rgb reflected = rgb_sub(forest->radiosity[leaf], emission);
-        for (int c = 0; c < BANDS; c++)
-            sum.band[c] += weight.band[c] * reflected.band[c];
+        rgb_add(&sum, 1.0, rgb_times(weight, reflected));
         *error += meter->error ? (double)meter->error[leaf] / rays : 0.0;
     }
     return sum;
@@ -179,14 +178,12 @@ struct metered meter_read(const struct meter *meter, struct vec3 x, struct vec3 
                 continue;
             struct rgb seen = visible_share(meter, x, normal, meter->lamps[k],
                                             1 + (int)(part * each), own);
-            for (int c = 0; c < BANDS; c++)
-                lamps.band[c] += factor * seen.band[c] * e.band[c];
+            rgb_add(&lamps, 1.0, rgb_times(rgb_scale(seen, factor), e));
         }
         rgb_add(&light, 1.0, lamps);
         rgb_add(&reading.lamps, 1.0 / BATCHES, lamps);
         rgb_add(&reading.irradiance, 1.0 / BATCHES, light);
-        for (int c = 0; c < BANDS; c++)
-            square.band[c] += light.band[c] * light.band[c] / BATCHES;
+        rgb_add(&square, 1.0 / BATCHES, rgb_times(light, light));
     }
     for (int c = 0; c < BANDS; c++) {
         double mean = reading.irradiance.band[c];

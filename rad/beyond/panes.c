@@ -80,9 +80,7 @@ bool panes_next(const struct panes *panes, struct pane_walk *walk,
 
 void pane_filter(const struct scene *scene, int32_t root, struct rgb *light)
 {
-    const struct material *pane = scene_root_material(scene, root);
-    for (int c = 0; c < BANDS; c++)
-        light->band[c] *= pane->transmittance.band[c];
+    *light = rgb_times(*light, scene_root_material(scene, root)->transmittance);
 }
 
 void panes_filter(const struct panes *panes, struct pane_walk walk, struct rgb *light,
@@ -99,8 +97,7 @@ void panes_cross(const struct panes *panes, struct pane_walk walk,
     while (panes && panes_next(panes, &walk, counts)) {
         double weight[3];
         int32_t leaf = leaf_under(forest, walk.root, walk.at, weight);
-        for (int c = 0; c < BANDS; c++)
-            light->band[c] += share->band[c] * forest->radiosity[leaf].band[c];
+        rgb_add(light, 1.0, rgb_times(*share, forest->radiosity[leaf]));
         pane_filter(panes->scene, walk.root, share);
     }
 }

@@ -219,8 +219,7 @@ static bool is_blocked(const struct pathtracer *pathtracer, const struct arrival
 static void add_light(struct rgb *sum, struct rgb throughput, double factor,
                       struct rgb colour)
 {
-    for (int c = 0; c < BANDS; c++)
-        sum->band[c] += throughput.band[c] * factor * colour.band[c];
+    rgb_add(sum, 1.0, rgb_times(rgb_scale(throughput, factor), colour));
 }
 
 /* Irradiance from a point chosen on the lights. */
@@ -259,11 +258,6 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct arri
 
 /* --- paths --- */
 
-static double largest(struct rgb colour)
-{
-    return real_max(colour.band[0], real_max(colour.band[1], colour.band[2]));
-}
-
 /* Finds where a ray arrives, on a blocker or a pane. False for neither. */
 static bool travel(const struct pathtracer *pathtracer, struct half_line ray,
                    bool fronts_only, struct draw *draw, struct rgb *throughput,
@@ -276,8 +270,8 @@ static bool travel(const struct pathtracer *pathtracer, struct half_line ray,
     const struct panes *panes = pathtracer->panes;
     while (panes && panes_next(panes, &walk, pathtracer->counts)) {
         const struct material *pane = scene_root_material(pathtracer->scene, walk.root);
-        double rho = largest(pane->reflectance);
-        double ends = rho / (rho + largest(pane->transmittance));
+        double rho = rgb_most(pane->reflectance);
+        double ends = rho / (rho + rgb_most(pane->transmittance));
         bool on = !(rho > 0.0) || hash_unit(draw->next++) >= ends;
         if (on)
             pane_filter(pathtracer->scene, walk.root, throughput);
@@ -306,8 +300,7 @@ static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
 /* The probability of going on from a surface. */
 static double survival_at(const struct pathtracer *pathtracer, int32_t root)
 {
-    const double *rho = scene_root_material(pathtracer->scene, root)->reflectance.band;
-    return real_max(rho[0], real_max(rho[1], rho[2]));
+    return rgb_most(scene_root_material(pathtracer->scene, root)->reflectance);
 }
 
 /* Whether a path goes on from a surface, and with how much. */
@@ -379,8 +372,7 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     struct triangle t = scene_root_triangle(scene, p.root);
     p.x = point_on(&t, &draw);
     struct rgb emission = scene_root_material(scene, p.root)->emission;
-    struct rgb light = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
-    add_light(&light, one, 1.0 / rgb_sum(emission), emission);
+    struct rgb light = rgb_scale(emission, 1.0 / rgb_sum(emission));
     for (;;) {
         if (!follow(pathtracer, &p, &draw, &light, &q))
             return;
@@ -411,8 +403,7 @@ struct rgb pathtracer_seen(const struct pathtracer *pathtracer, pixel_ray *ray,
         const struct material *material;
         material = scene_root_material(pathtracer->scene, seen.root);
         add_light(&sum, throughput, 1.0 / samples, material->emission);
-        for (int c = 0; c < BANDS; c++)
-            throughput.band[c] *= material->reflectance.band[c];
+        throughput = rgb_times(throughput, material->reflectance);
         add_light(&sum, throughput, 1.0 / samples, irradiance(pathtracer, seen, &draw));
     }
     return sum;

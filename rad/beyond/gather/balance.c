@@ -150,8 +150,7 @@ void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
             own->missing.band[c] = sum[0] > 0.0 ? missing / sum[0] : 0.0;
         }
     for (int64_t i = 0; i < e->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            h[i].band[c] += balance_of(b, i)->spread.band[c] * b->spread[i].band[c];
+        rgb_add(&h[i], 1.0, rgb_times(balance_of(b, i)->spread, b->spread[i]));
 }
 
 void balance_absorb(struct light_balance *b, struct rgb *h)

@@ -36,16 +36,13 @@ static struct rgb variation_of(const struct equation *e, int64_t place, struct v
     int32_t patch = e->gather->order[place], parent = forest->patches[patch].parent;
     struct rgb base = parent >= 0 ? e->radiosity[e->gather->place[parent]]
                                   : forest_material(forest, patch)->emission;
-    struct rgb deviation = rgb_sub(e->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
         struct vec3 apart = vec3_sub(e->gather->near->leaves[patch].middle, from);
         double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
         part = fmin(1.0, UNDIVIDED * near);
     }
-    for (int c = 0; c < BANDS; c++)
-        deviation.band[c] *= part;
-    return deviation;
+    return rgb_scale(rgb_sub(e->radiosity[place], base), part);
 }
 
 void claim_by_mesh(const struct equation *e, struct rgb *variance)

@@ -111,7 +111,7 @@ void equation_number_near(struct equation *e)
             continue;
         number[place] = (int32_t)e->near_count;
         items[e->near_count] = items[place];
-        e->near[e->near_count++] = (struct too_near){-1, {{1.0, 1.0, 1.0}}};
+        e->near[e->near_count++] = (struct too_near){-1, rgb_grey(1.0)};
     }
     for (int64_t i = 0; i < e->count; i++)
         if (number[equation_place(e, i)] >= 0)
@@ -194,14 +194,15 @@ void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
         }
     }
     for (int64_t k = 0; k < e->near_count; k++)
-        for (int c = 0; c < BANDS && e->near[k].leaf >= 0; c++)
-            seen[e->near[k].leaf].band[c] *= e->near[k].shown.band[c];
+        if (e->near[k].leaf >= 0)
+            seen[e->near[k].leaf] =
+                rgb_times(seen[e->near[k].leaf], e->near[k].shown);
 }
 
 void equation_show_means(struct equation *e, const struct rgb *b, struct rgb *seen)
 {
     for (int64_t k = 0; k < e->near_count; k++)
-        e->near[k].shown = (struct rgb){{1.0, 1.0, 1.0}};
+        e->near[k].shown = rgb_grey(1.0);
     equation_show(e, b, true, seen);
 }
 
@@ -254,8 +255,8 @@ void equation_reflect(const struct equation *e, const struct rgb *h, struct rgb 
 {
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
-        for (int c = 0; c < BANDS; c++)
-            b[i].band[c] = m->emission.band[c] + m->reflectance.band[c] * h[i].band[c];
+        b[i] = m->emission;
+        rgb_add(&b[i], 1.0, rgb_times(m->reflectance, h[i]));
     }
 }
 

@@ -110,8 +110,8 @@ static void add_whole(struct receiver *r, const struct sender_part *part, double
         place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
-    receiver_add_point(r, part->patch, &part->slope, at,
-                       &(struct rgb){{factor, factor, factor}});
+    struct rgb weight = rgb_grey(factor);
+    receiver_add_point(r, part->patch, &part->slope, at, &weight);
 }
 
 /* Adds the exact factors to a part of a leaf, or to its quarters. */

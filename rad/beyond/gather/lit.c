@@ -25,8 +25,7 @@ static void find_means(struct lit *lit, const struct model *model)
         struct lit *own = &lit[space_of(model, root)];
         double area = scene_root_own_area(model->scene, root);
         own->mean += area * rgb_sum(radiosity[root]);
-        for (int c = 0; c < BANDS; c++)
-            own->scale.band[c] += area * radiosity[root].band[c];
+        rgb_add(&own->scale, area, radiosity[root]);
     }
     for (int32_t s = 0; s < count; s++) {
         lit[s].area = model->spaces ? model->spaces->area[s] : model->area;

@@ -125,9 +125,7 @@ static struct rgb squares_of_light(const struct forest *forest, int32_t leaf)
 {
     struct rgb light =
         rgb_sub(forest->radiosity[leaf], forest_material(forest, leaf)->emission);
-    for (int c = 0; c < BANDS; c++)
-        light.band[c] *= light.band[c];
-    return light;
+    return rgb_times(light, light);
 }
 
 /* The same, over all bands. */

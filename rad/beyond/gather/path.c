@@ -42,9 +42,8 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
 static bool survives(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
 {
-    const struct rgb *rho =
-        &forest_material(r->gather->model->forest, point->patch)->reflectance;
-    double most = fmax(rho->band[0], fmax(rho->band[1], rho->band[2]));
+    double most =
+        rgb_most(forest_material(r->gather->model->forest, point->patch)->reflectance);
     struct rgb rest = *weight;
     if (u < most) {
         for (int c = 0; c < BANDS; c++) {
@@ -66,8 +65,7 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
         forest_material(r->gather->model->forest, point->patch);
     if (!aimed)
         receiver_add_source(r, weight, material->emission, 1.0);
-    for (int c = 0; c < BANDS; c++)
-        weight->band[c] *= material->reflectance.band[c];
+    *weight = rgb_times(*weight, material->reflectance);
     if (!(rgb_sum(*weight) > 0.0))
         return false;
     receiver_aim_beside(r, point->at, point->normal, point->patch, weight, seed);
@@ -120,9 +118,7 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
         senders->part_of[point.patch] != bright.patch ||
         !is_aimed_at_beside(r, &point, x))
         return;
-    struct rgb light = *weight;
-    for (int c = 0; c < BANDS; c++)
-        light.band[c] *= factor;
+    struct rgb light = rgb_scale(*weight, factor);
     if (r->gather->aims->panes) {
         struct pane_walk walk = pane_walk_to(x, point.at);
         if (receiver_puts_aside(r, walk, -1))
@@ -143,7 +139,7 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     find_leaf(forest, &point);
     if (!path_is_aimed_at(r, &point, x))
         return;
-    struct rgb weight = {{factor, factor, factor}};
+    struct rgb weight = rgb_grey(factor);
     r->bright += factor;
     if (g->aims->panes)
         receiver_cross(r, pane_walk_to(point_above(x, r->facet.plane.normal), y),
@@ -170,8 +166,7 @@ static struct rgb see_through(struct receiver *r, struct vec3 x, struct vec3 y,
     if (lamp) {
         straight = forest_material(g->model->forest, point.patch)->emission;
         receiver_add_source(r, &weight, straight, 1.0);
-        for (int c = 0; c < BANDS; c++)
-            straight.band[c] *= weight.band[c];
+        straight = rgb_times(straight, weight);
     }
     if (met == MET_FRONT && !r->lamps_alone)
         path_go_on(r, point, y, lamp, weight, seed, aims);
@@ -182,14 +177,14 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
                            struct vec3 x, struct vec3 y, int32_t patch, double factor,
                            uint64_t seed)
 {
-    struct rgb weight = {{1.0, 1.0, 1.0}};
+    struct rgb weight = rgb_grey(1.0);
     struct pane_walk walk = pane_walk_to(point_above(x, r->facet.plane.normal), y);
     if (receiver_puts_aside(r, walk, senders->sent ? patch : -1))
         return;
     if (senders->sent) {
-        struct rgb all = {{factor, factor, factor}};
         r->bright += factor;
-        rgb_add(&r->row->straight, 1.0, see_through(r, walk.at, y, all, seed, true));
+        rgb_add(&r->row->straight, 1.0,
+                see_through(r, walk.at, y, rgb_grey(factor), seed, true));
     } else if (senders->reflect) {
         receiver_see(r, x, y, patch, factor, seed);
     } else {
@@ -208,8 +203,7 @@ static void look_through(struct receiver *r, const struct point *point, struct v
         !receiver_choose_beside(r, r->gather->aims->window_cuts, point->at,
                                 point->normal, point->patch, seed, &pane))
         return;
-    for (int c = 0; c < BANDS; c++)
-        weight.band[c] *= pane.share;
+    weight = rgb_scale(weight, pane.share);
     see_through(r, x, pane.at, weight, hash_mix(seed + 1), false);
 }
 

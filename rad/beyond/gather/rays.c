@@ -211,7 +211,7 @@ void receiver_fire(struct receiver *r)
         int half = 2 * i / r->rays, k = i % STREAM_RAYS;
         if (k == 0)
             fill_stream(r, &sequence, i, &stream);
-        follow(r, &stream, k, (struct rgb){{share, share, share}}, half,
+        follow(r, &stream, k, rgb_grey(share), half,
                hash_mix(r->seed ^ hash_mix((uint64_t)i)));
         r->near = -1;
         count_light(r, i, half);

@@ -59,9 +59,7 @@ static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t 
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    const struct rgb *b = &g->model->forest->radiosity[patch];
-    for (int c = 0; c < BANDS; c++)
-        r->light.band[c] += weight->band[c] * b->band[c];
+    rgb_add(&r->light, 1.0, rgb_times(*weight, g->model->forest->radiosity[patch]));
     if (r->kind != RECEIVER_ROW)
         return;
     struct gather_sum *sum = sum_of(g, g->place[patch], r->near);
@@ -74,12 +72,9 @@ void receiver_add_point(struct receiver *r, int32_t patch,
                         const struct rgb *weight)
 {
     receiver_add_patch(r, patch, weight);
-    struct rgb steep = *weight, part;
-    for (int c = 0; c < BANDS; c++)
-        steep.band[c] *= slope->rise;
+    struct rgb steep = rgb_scale(*weight, slope->rise);
     for (int k = 0; k < 3 && slope->rise != 0.0; k++) {
-        for (int c = 0; c < BANDS; c++)
-            part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
+        struct rgb part = rgb_scale(steep, at[k] - 1.0 / 3.0);
         receiver_add_patch(r, slope->first + k, &part);
     }
 }
@@ -87,19 +82,17 @@ void receiver_add_point(struct receiver *r, int32_t patch,
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
-    struct gather_nears *near = r->gather->near;
-    for (int c = 0; c < BANDS && r->near >= 0; c++)
-        near->paths[near->path_count - 1].light.band[c] +=
-            weight->band[c] * factor * emission.band[c];
+    const struct gather_nears *near = r->gather->near;
+    if (r->near >= 0)
+        rgb_add(&near->paths[near->path_count - 1].light, 1.0,
+                rgb_times(rgb_scale(*weight, factor), emission));
 }
 
 void receiver_add_source(struct receiver *r, const struct rgb *weight,
                          struct rgb emission, double factor)
 {
     receiver_add_near(r, weight, emission, factor);
-    for (int c = 0; c < BANDS; c++) {
-        double h = weight->band[c] * factor * emission.band[c];
-        r->row->source.band[c] += h;
-        r->light.band[c] += h;
-    }
+    struct rgb h = rgb_times(rgb_scale(*weight, factor), emission);
+    rgb_add(&r->row->source, 1.0, h);
+    rgb_add(&r->light, 1.0, h);
 }
