@@ -128,7 +128,7 @@ static struct choice choose(const struct cuts *cuts, struct cut cut, double u, b
  * nothing in the way, or, `seen`, by the part of that which is seen from around. */
 static struct estimate by_segments(const struct place *at, int n, bool seen)
 {
-    struct cuts *cuts = at->gather->aims->lamp_cuts;
+    struct cuts *cuts = at->gather->aims->cuts[LAMPS];
     struct cut cut = cuts_at(cuts, at->leaf);
     struct estimate sums = {0.0, 0.0};
     for (int i = 0; i < n; i++) {
@@ -167,7 +167,7 @@ static double by_factors(const struct place *at)
 /* H by many rays, and by many segments to each lamp. */
 static double truth_at(const struct place *at)
 {
-    const struct senders *lamps = at->gather->aims->lamps;
+    const struct senders *lamps = at->gather->aims->senders[LAMPS];
     double u[SEQUENCE_DIMENSIONS], h = by_rays(at, TRUE_RAYS, false).h;
     for (int64_t k = 0; k < lamps->sender_count; k++)
         for (int i = 0; i < TRUE_SEGMENTS; i++) {
@@ -234,11 +234,11 @@ static void look_around(struct final_gather *gather)
 {
     const struct forest *forest = gather->model->forest;
     int32_t leaf = forest_next_leaf(forest, -1);
-    cuts_count(gather->aims->lamp_cuts);
+    cuts_count(gather->aims->cuts[LAMPS]);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
         if (forest->patches[leaf].id.root < 2)
             final_gather_look(gather, leaf, LOOKED);
-    cuts_learn(gather->aims->lamp_cuts);
+    cuts_learn(gather->aims->cuts[LAMPS]);
 }
 
 int main(int argc, char **argv)

@@ -117,7 +117,7 @@ static struct gather_look *look(struct solver *solver, struct meshing *meshing,
     l.looks = alloc_array((size_t)count, sizeof *looks);
     final_gather_renew(meshing->gather);
     stages_run(&stages);
-    struct cuts *cuts = meshing->gather->aims->lamp_cuts;
+    struct cuts *cuts = meshing->gather->aims->cuts[LAMPS];
     comm_add(comm, cuts->tally, 2 * cuts->count);
     cuts_learn(cuts);
     memmove(l.looks + stages.at[comm->rank], l.looks, (size_t)l.count * sizeof *looks);
@@ -157,7 +157,7 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
     int64_t count = 0;
     int32_t *leaves = meshing_looks(&meshing) ? meshing_choose(&meshing, &count) : NULL;
     if (count > 0)
-        cuts_count(gather->aims->lamp_cuts);
+        cuts_count(gather->aims->cuts[LAMPS]);
     for (int round = 0; round < ROUNDS && count > 0; round++) {
         progress_begin(solver->progress, "looking", round, 0);
         struct gather_look *looks = look(solver, &meshing, leaves, count);

@@ -135,7 +135,7 @@ static double add_shot(struct receiver *r, struct aim *aim, const struct shot *s
         return 0.0;
     if (r->gather->aims->panes)
         receiver_see_by_panes(r, aim->senders, shot->x, shot->y, patch, factor, seed);
-    else if (aim->senders->reflect)
+    else if (aim->senders->kind == BRIGHT_PATCHES)
         receiver_see(r, shot->x, shot->y, patch, factor, seed);
     else
         receiver_add_source(r, &ALL, sender_light(aim->senders, patch), factor);
@@ -151,7 +151,7 @@ static double exact_factor(const struct receiver *r, const struct senders *sende
 {
     int64_t *work = &r->gather->model->estimating;
     const struct facet *to = &r->facet, *from = sender;
-    if (senders->sent && from->area < to->area)
+    if (senders->kind == WINDOWS && from->area < to->area)
         return from->area / to->area *
                mean_factor(&from->triangle, from->plane.normal, &to->triangle, work);
     return mean_factor(&to->triangle, to->plane.normal, &from->triangle, work);
@@ -184,14 +184,15 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
     struct gather_aims *aims = r->gather->aims;
-    bool exact = factor >= 0.0 || !aim->senders->reflect;
+    bool window = aim->senders->kind == WINDOWS;
+    bool exact = factor >= 0.0 || aim->senders->kind != BRIGHT_PATCHES;
     double all = 0.0;
     int found = 0, start = aim->index;
     if (!facets_face(&r->facet, &sender))
         return;
-    if (aim->senders->sent && factor < 0.0)
+    if (window && factor < 0.0)
         factor = exact_factor(r, aim->senders, &sender);
-    if (aim->senders->sent && TRIES_MOST * factor * r->facet.area > sender.area)
+    if (window && TRIES_MOST * factor * r->facet.area > sender.area)
         found = find_shots(r, aim, &sender, count, TRIES_MOST, true, &all);
     if (found == 0)
         found = find_shots(r, aim, &sender, count, exact ? TRIES_MOST : 1, false, &all);
@@ -384,19 +385,19 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
  * reflected light. */
 void receiver_aim_at_bright(struct receiver *r)
 {
-    const struct gather_aims *aims = r->gather->aims;
-    double part = aims->bright_part[node_space(r->gather->model, r->row->leaf)];
-    aim_at_cut(r, aims->bright_cuts, (int)ceil(r->rays * part));
+    int32_t space = node_space(r->gather->model, r->row->leaf);
+    double part = r->gather->lit[space].bright_part;
+    aim_at_cut(r, r->gather->aims->cuts[BRIGHT_PATCHES], (int)ceil(r->rays * part));
 }
 
 void receiver_aim(struct receiver *r)
 {
-    aim_at_cut(r, r->gather->aims->lamp_cuts, r->segments);
+    aim_at_cut(r, r->gather->aims->cuts[LAMPS], r->segments);
     r->row->straight = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
     if (r->gather->aims->panes) {
         struct rgb before = r->row->straight;
-        aim_at_cut(r, r->gather->aims->window_cuts, r->segments);
+        aim_at_cut(r, r->gather->aims->cuts[WINDOWS], r->segments);
         r->through = rgb_sub(r->light, rgb_sub(r->row->straight, before));
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
     }

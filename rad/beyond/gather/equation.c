@@ -140,7 +140,7 @@ double equation_shining_area(const struct equation *e, int64_t leaf)
     const struct forest *forest = e->gather->model->forest;
     uint32_t root = forest->patches[e->patch[leaf]].id.root;
     const struct cover *cover = &e->covers[leaf];
-    bool lamp = root_is_sender(e->gather->aims->lamps, (int32_t)root);
+    bool lamp = root_is_lamp(e->gather, (int32_t)root);
     return (lamp ? e->areas[leaf] : equation_bare_area(e, leaf)) *
            (double)cover->outside * (double)cover->kept;
 }

@@ -74,14 +74,6 @@ static struct gather_sums *sums_create(const struct model *model, const struct l
     return sums;
 }
 
-static struct senders *lamps_create(const struct model *model, const struct lit *lit)
-{
-    double *least = alloc_array((size_t)lit_count(model), sizeof *least);
-    for (int32_t s = 0; s < lit_count(model); s++)
-        least[s] = lit[s].lamp_least;
-    return senders_create(model, least, false);
-}
-
 struct final_gather *final_gather_create(struct model *model, int rays,
                                          const uint8_t *cut, struct lit *lit)
 {
@@ -93,8 +85,6 @@ struct final_gather *final_gather_create(struct model *model, int rays,
     gather->rays = rays_for(rays, forest_count(forest).leaves);
     gather->lit = lit;
     gather->aims = alloc_array(1, sizeof *gather->aims);
-    gather->aims->bright_part = alloc_array((size_t)lit_count(model), sizeof(double));
-    gather->aims->lamps = lamps_create(model, lit);
     gather->aims->panes = panes_create(model->scene);
     gather->view =
         view_create(model, gather->aims->panes ? -1 : FACED_PER_RAY * gather->rays);
@@ -133,15 +123,12 @@ static void drop_patches(struct final_gather *gather)
 
 static void aims_destroy(struct gather_aims *aims)
 {
-    senders_destroy(aims->lamps);
-    senders_destroy(aims->bright);
+    for (int kind = 0; kind < SENDER_KINDS; kind++) {
+        cuts_destroy(aims->cuts[kind]);
+        senders_destroy(aims->senders[kind]);
+    }
     regions_destroy(aims->regions);
-    cuts_destroy(aims->lamp_cuts);
-    cuts_destroy(aims->bright_cuts);
-    cuts_destroy(aims->window_cuts);
-    senders_destroy(aims->windows);
     panes_destroy(aims->panes);
-    alloc_free(aims->bright_part);
     alloc_free(aims->offers);
     alloc_free(aims->shots);
     alloc_free(aims);
@@ -160,27 +147,30 @@ void final_gather_destroy(struct final_gather *gather)
 
 /* --- rows --- */
 
-static void find_bright(struct gather_aims *aims, const struct model *model,
-                        struct lit *lit)
+/* Makes the senders of a kind anew, and their cuts. */
+static void renew_senders(struct final_gather *gather, enum sender_kind kind)
 {
-    int32_t spaces = lit_count(model);
-    double *least = alloc_array((size_t)spaces, sizeof *least);
-    lit_renew(lit, model);
-    for (int32_t s = 0; s < spaces; s++)
-        least[s] = lit[s].bright_least;
-    senders_destroy(aims->bright);
-    aims->bright = senders_create(model, least, true);
-    for (int32_t s = 0; s < spaces; s++)
-        aims->bright_part[s] = 0.0;
-    for (int64_t i = 0; i < aims->bright->sender_count; i++) {
-        int32_t patch = aims->bright->patches[i];
-        aims->bright_part[node_space(model, patch)] +=
-            forest_area(model->forest, patch) *
-            rgb_sum(sender_light(aims->bright, patch));
+    struct gather_aims *aims = gather->aims;
+    cuts_destroy(aims->cuts[kind]);
+    senders_destroy(aims->senders[kind]);
+    aims->senders[kind] = senders_create(gather->model, kind, gather->lit,
+                                         aims->panes ? aims->panes->sent : NULL);
+    aims->cuts[kind] = cuts_create(aims->senders[kind], aims->regions, gather->rays);
+}
+
+static void find_bright_parts(struct lit *lit, const struct senders *bright)
+{
+    const struct model *model = bright->model;
+    for (int32_t s = 0; s < lit_count(model); s++)
+        lit[s].bright_part = 0.0;
+    for (int64_t i = 0; i < bright->sender_count; i++) {
+        int32_t patch = bright->patches[i];
+        lit[node_space(model, patch)].bright_part +=
+            forest_area(model->forest, patch) * rgb_sum(sender_light(bright, patch));
     }
-    for (int32_t s = 0; s < spaces; s++)
+    for (int32_t s = 0; s < lit_count(model); s++)
         if (lit[s].reflected > 0.0)
-            aims->bright_part[s] /= lit[s].reflected * lit[s].area;
+            lit[s].bright_part /= lit[s].reflected * lit[s].area;
 }
 
 void final_gather_renew(struct final_gather *gather)
@@ -197,20 +187,16 @@ void final_gather_renew(struct final_gather *gather)
     gather->sums = sums_create(model, gather->lit);
     if (!aims->regions) {
         aims->regions = regions_create(model);
-        aims->lamp_cuts = cuts_create(aims->lamps, aims->regions, gather->rays);
+        renew_senders(gather, LAMPS); /* whose cuts keep what looks have told */
     }
     regions_follow(aims->regions, forest);
-    find_bright(aims, model, gather->lit);
+    lit_renew(gather->lit, model);
+    renew_senders(gather, BRIGHT_PATCHES);
+    find_bright_parts(gather->lit, aims->senders[BRIGHT_PATCHES]);
     if (aims->panes) {
-        senders_destroy(aims->windows);
         panes_look(aims->panes, model->octree, forest);
-        aims->windows = senders_of_panes(model, aims->panes->sent);
+        renew_senders(gather, WINDOWS);
     }
-    cuts_destroy(aims->bright_cuts);
-    cuts_destroy(aims->window_cuts);
-    aims->bright_cuts = cuts_create(aims->bright, aims->regions, gather->rays);
-    if (aims->panes)
-        aims->window_cuts = cuts_create(aims->windows, aims->regions, gather->rays);
     struct gather_leaf *leaves = alloc_array((size_t)forest->count, sizeof *leaves);
     gather->near->leaves = leaves;
     for (int32_t p = 0; p < forest->count; p++) {
@@ -224,11 +210,8 @@ void final_gather_renew(struct final_gather *gather)
 
 void final_gather_forget(struct final_gather *gather)
 {
-    struct gather_aims *aims = gather->aims;
-    regions_destroy(aims->regions);
-    cuts_destroy(aims->lamp_cuts);
-    aims->regions = NULL;
-    aims->lamp_cuts = NULL;
+    regions_destroy(gather->aims->regions);
+    gather->aims->regions = NULL;
     gather->cut = NULL;
     gather->rays =
         rays_for(gather->rays_asked, forest_count(gather->model->forest).leaves);

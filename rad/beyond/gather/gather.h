@@ -9,7 +9,6 @@
 #define RAD_BEYOND_GATHER_GATHER_H
 
 #include "rad/beyond/gather/cuts.h"
-#include "rad/beyond/gather/lit.h"
 #include "rad/beyond/gather/slope.h"
 #include "rad/beyond/gather/view.h"
 #include "rad/beyond/panes.h"
@@ -89,14 +88,10 @@ struct offer {
 
 /* Senders as targets of segments. */
 struct gather_aims {
-    struct senders *lamps;
-    struct senders *bright;    /* patches reflecting enough to be aimed at */
-    double *bright_part;       /* [lit_count()] their part of the light reflected in each
-                                  space, 1 */
     struct panes *panes;       /* NULL: none */
-    struct senders *windows;   /* panes aimed at; NULL: there are no panes */
     struct regions *regions;
-    struct cuts *lamp_cuts, *bright_cuts, *window_cuts;
+    struct senders *senders[SENDER_KINDS]; /* NULL: no windows */
+    struct cuts *cuts[SENDER_KINDS];       /* of these */
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
     struct shot *shots;        /* [shot_capacity] room for those at a sender */
     int64_t offer_capacity, shot_capacity;
@@ -131,6 +126,12 @@ struct gather_points {
     int32_t root;       /* under the points */
     bool above;         /* the points lie a little above the root, which may hide lamps */
 };
+
+/* True if the root is a lamp that is aimed at. */
+static inline bool root_is_lamp(const struct final_gather *gather, int32_t root)
+{
+    return gather->aims->senders[LAMPS]->part_of[root] == root;
+}
 
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
 double forest_mean_reflected(const struct forest *forest);

@@ -15,6 +15,7 @@ struct lit {
     double reflected;  /* the reflected part, over bands, W/m^2 */
     double lamp_least; /* a lamp emits more than this, over bands, W/m^2 */
     double bright_least; /* a bright patch reflects more than this */
+    double bright_part;  /* the part of the reflected light by patches aimed at, 1 */
     struct rgb scale;  /* factors that give each band the mean of all three, 1. A band
                           with less than GATHER_DIM of this mean counts as having so
                           much */

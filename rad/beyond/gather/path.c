@@ -24,7 +24,7 @@ enum { PATH_MOST = 256, PATH_SURE = 2 };
 static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
-    if (!root_is_sender(r->gather->aims->lamps, met->root))
+    if (!root_is_lamp(r->gather, met->root))
         return false;
     struct triangle t = scene_root_triangle(r->gather->model->scene, met->root);
     return !point_is_beside(x, &t);
@@ -77,7 +77,7 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
 
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x)
 {
-    int32_t bright = r->gather->aims->bright->part_of[met->patch];
+    int32_t bright = r->gather->aims->senders[BRIGHT_PATCHES]->part_of[met->patch];
     if (bright < 0)
         return false;
     struct triangle t = forest_triangle(r->gather->model->forest, bright);
@@ -90,7 +90,7 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {
-    const struct senders *bright = r->gather->aims->bright;
+    const struct senders *bright = r->gather->aims->senders[BRIGHT_PATCHES];
     int32_t patch = bright->part_of[met->patch];
     if (r->kind != RECEIVER_PIXEL || patch < 0)
         return false;
@@ -103,7 +103,7 @@ static bool is_aimed_at_beside(const struct receiver *r, const struct point *met
 static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                         const struct rgb *weight, uint64_t seed)
 {
-    const struct senders *senders = r->gather->aims->bright;
+    const struct senders *senders = r->gather->aims->senders[BRIGHT_PATCHES];
     if (r->kind != RECEIVER_PIXEL || !(senders_power(senders) > 0.0))
         return;
     struct choice bright = sender_choose(senders, senders->nodes, hash_unit(seed));
@@ -144,7 +144,7 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     if (g->aims->panes)
         receiver_cross(r, pane_walk_to(point_above(x, r->facet.plane.normal), y),
                        &weight);
-    path_go_on(r, point, x, root_is_sender(g->aims->lamps, root), weight, seed, true);
+    path_go_on(r, point, x, root_is_lamp(g, root), weight, seed, true);
 }
 
 /* Adds `weight` times the light seen from x through the point y of a pane. Returns the
@@ -158,7 +158,7 @@ static struct rgb see_through(struct receiver *r, struct vec3 x, struct vec3 y,
     struct point point;
     enum met met = trace(r, x, direction, &point);
     struct pane_walk walk = receiver_walk(r, x, direction, met, &point);
-    bool lamp = met == MET_FRONT && root_is_sender(g->aims->lamps, point.root);
+    bool lamp = met == MET_FRONT && root_is_lamp(g, point.root);
     if (r->lamps_alone)
         receiver_filter(r, walk, &weight);
     else
@@ -179,13 +179,13 @@ void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
 {
     struct rgb weight = rgb_grey(1.0);
     struct pane_walk walk = pane_walk_to(point_above(x, r->facet.plane.normal), y);
-    if (receiver_puts_aside(r, walk, senders->sent ? patch : -1))
+    if (receiver_puts_aside(r, walk, senders->kind == WINDOWS ? patch : -1))
         return;
-    if (senders->sent) {
+    if (senders->kind == WINDOWS) {
         r->bright += factor;
         rgb_add(&r->row->straight, 1.0,
                 see_through(r, walk.at, y, rgb_grey(factor), seed, true));
-    } else if (senders->reflect) {
+    } else if (senders->kind == BRIGHT_PATCHES) {
         receiver_see(r, x, y, patch, factor, seed);
     } else {
         receiver_filter(r, walk, &weight);
@@ -200,7 +200,7 @@ static void look_through(struct receiver *r, const struct point *point, struct v
 {
     struct sender_point pane;
     if (!r->gather->aims->panes ||
-        !receiver_choose_beside(r, r->gather->aims->window_cuts, point->at,
+        !receiver_choose_beside(r, r->gather->aims->cuts[WINDOWS], point->at,
                                 point->normal, point->patch, seed, &pane))
         return;
     weight = rgb_scale(weight, pane.share);

@@ -90,7 +90,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     }
     if (r->gather->aims->panes)
         receiver_cross(r, walk, &weight);
-    bool aimed = root_is_sender(r->gather->aims->lamps, point.root);
+    bool aimed = root_is_lamp(r->gather, point.root);
     if (path_ends(r, &point, origin)) { /* as most do */
         path_add_mesh(r, &point, aimed, &weight);
         return;

@@ -38,7 +38,7 @@ static struct rgb light_of_lamps(const struct receiver *r)
     for (int64_t i = 0; i < g->sums->count; i++) {
         int32_t patch = g->order[g->sums->items[i].place];
         const struct material *m = forest_material(forest, patch);
-        if (!root_is_sender(g->aims->lamps, (int32_t)forest->patches[patch].id.root))
+        if (!root_is_lamp(g, (int32_t)forest->patches[patch].id.root))
             continue;
         for (int c = 0; c < BANDS; c++)
             light.band[c] += g->sums->items[i].weight[c] * m->emission.band[c];

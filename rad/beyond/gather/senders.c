@@ -43,16 +43,18 @@ struct bounds bounds_of(const struct model *model, int32_t node)
 struct rgb sender_light(const struct senders *senders, int32_t patch)
 {
     const struct forest *forest = senders->model->forest;
-    if (senders->sent)
+    if (senders->kind == WINDOWS)
         return senders->sent[patch];
     struct rgb emission = forest_material(forest, patch)->emission;
-    return senders->reflect ? rgb_sub(forest->radiosity[patch], emission) : emission;
+    return senders->kind == LAMPS ? emission
+                                  : rgb_sub(forest->radiosity[patch], emission);
 }
 
 /* --- building --- */
 
 struct building {
     struct senders *senders;
+    const struct lit *lit;
     double *power; /* [forest->count] of the senders at a patch or below */
     double *before; /* [tree->root_count + 1] of those before a place in the tree */
 };
@@ -69,6 +71,13 @@ static double mean_square(const struct senders *senders, int32_t patch)
     return 0.25 * sum;
 }
 
+/* A sender of a space sends more than this, over all bands, W/m^2. */
+static double least_of(enum sender_kind kind, const struct lit *lit)
+{
+    return kind == LAMPS ? lit->lamp_least
+           : kind == BRIGHT_PATCHES ? lit->bright_least : 0.0;
+}
+
 /* Finds the senders in a patch; `part`: the one around the patch, or -1. */
 static void find_senders(struct building *b, int32_t patch, int32_t part)
 {
@@ -76,9 +85,9 @@ static void find_senders(struct building *b, int32_t patch, int32_t part)
     const struct forest *forest = senders->model->forest;
     const struct patch *self = &forest->patches[patch];
     double sent = rgb_sum(sender_light(senders, patch)), below = 0.0;
-    bool whole = !senders->reflect;
-    int32_t space = node_space(senders->model, patch);
-    if (part < 0 && sent > (senders->least ? senders->least[space] : 0.0) &&
+    bool whole = senders->kind != BRIGHT_PATCHES;
+    const struct lit *lit = &b->lit[node_space(senders->model, patch)];
+    if (part < 0 && sent > least_of(senders->kind, lit) &&
         (whole || mean_square(senders, patch) <= EVEN * sent * sent))
         part = patch;
     for (int k = 0; k < 4 && !whole && !patch_is_leaf(self); k++) {
@@ -129,13 +138,14 @@ static int32_t add_node(struct building *b, int32_t node)
     return number;
 }
 
-/* Fills in the tree. */
-static void build(struct senders *senders)
+struct senders *senders_create(const struct model *model, enum sender_kind kind,
+                               const struct lit *lit, const struct rgb *sent)
 {
-    const struct model *model = senders->model;
     const struct cluster_tree *tree = model->clusters->tree;
     size_t patches = (size_t)model->forest->count;
-    struct building b = {.senders = senders};
+    struct senders *senders = alloc_array(1, sizeof *senders);
+    struct building b = {.senders = senders, .lit = lit};
+    *senders = (struct senders){.model = model, .kind = kind, .sent = sent};
     b.power = alloc_array(patches, sizeof *b.power);
     b.before = alloc_array((size_t)tree->root_count + 1, sizeof *b.before);
     senders->part_of = alloc_array(patches, sizeof *senders->part_of);
@@ -151,21 +161,6 @@ static void build(struct senders *senders)
         add_node(&b, NODE_TOP);
     alloc_free(b.power);
     alloc_free(b.before);
-}
-
-struct senders *senders_create(const struct model *model, double *least, bool reflect)
-{
-    struct senders *senders = alloc_array(1, sizeof *senders);
-    *senders = (struct senders){.model = model, .reflect = reflect, .least = least};
-    build(senders);
-    return senders;
-}
-
-struct senders *senders_of_panes(const struct model *model, const struct rgb *sent)
-{
-    struct senders *senders = alloc_array(1, sizeof *senders);
-    *senders = (struct senders){.model = model, .sent = sent};
-    build(senders);
     return senders;
 }
 
@@ -173,7 +168,6 @@ void senders_destroy(struct senders *senders)
 {
     if (!senders)
         return;
-    alloc_free(senders->least);
     alloc_free(senders->nodes);
     alloc_free(senders->patches);
     alloc_free(senders->before);

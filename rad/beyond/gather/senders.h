@@ -8,7 +8,7 @@
 #ifndef RAD_BEYOND_GATHER_SENDERS_H
 #define RAD_BEYOND_GATHER_SENDERS_H
 
-#include "rad/beyond/node.h"
+#include "rad/beyond/gather/lit.h"
 
 /* A ball around all points of a node, and a box around their unit normals. */
 struct bounds {
@@ -28,12 +28,14 @@ struct sender_node {
     int32_t space;      /* of these; -1: of several */
 };
 
+/* Roots that emit; the largest patches that reflect much light, and evenly; panes, which
+ * are roots and send the light behind. */
+enum sender_kind { LAMPS, BRIGHT_PATCHES, WINDOWS, SENDER_KINDS };
+
 struct senders {
     const struct model *model; /* borrowed */
-    bool reflect;              /* the light sent is reflected; false: emitted */
-    const struct rgb *sent;    /* borrowed, [roots] light of panes; NULL: no panes */
-    double *least;             /* [lit_count()] a sender of a space sends more than this,
-                                  over all bands, W/m^2; NULL: than 0 */
+    enum sender_kind kind;
+    const struct rgb *sent;    /* borrowed, [roots] light of panes */
     struct sender_node *nodes; /* [count] parents first; node 0 is the top */
     int32_t *patches;          /* [sender_count] the senders, in the tree's order */
     double *before;            /* [sender_count + 1] power of those before, over all
@@ -43,24 +45,16 @@ struct senders {
     int64_t count, capacity, sender_count, sender_capacity, before_capacity;
 };
 
-/* The patches sending more than `least`, by space, over all bands: lamps, which are
- * roots, or, if `reflect`, the largest patches doing so evenly. Borrows the model, which
- * has clusters and a solution; owns `least`. */
-struct senders *senders_create(const struct model *model, double *least, bool reflect);
-
-/* The panes that send light, which are roots. Borrows `sent`: see struct panes. */
-struct senders *senders_of_panes(const struct model *model, const struct rgb *sent);
-void senders_destroy(struct senders *senders);
+/* The senders of a kind, as bright as `lit` asks for. Borrows the model, which has
+ * clusters and a solution, and of windows `sent`: see struct panes. */
+struct senders *senders_create(const struct model *model, enum sender_kind kind,
+                               const struct lit *lit, const struct rgb *sent);
+void senders_destroy(struct senders *senders); /* NULL: none */
 
 /* The power of all senders, over all bands, W in square scene units. */
 static inline double senders_power(const struct senders *senders)
 {
     return senders->before[senders->sender_count];
-}
-
-static inline bool root_is_sender(const struct senders *senders, int32_t root)
-{
-    return senders->part_of[root] == root;
 }
 
 /* The light of a sender, W/m^2. */

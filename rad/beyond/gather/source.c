@@ -45,7 +45,7 @@ bool receiver_choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x
     if (sender.patch < 0)
         return false;
     struct triangle triangle = scene_root_triangle(scene, sender.patch);
-    bool pane = cuts->senders->sent != NULL;
+    bool pane = cuts->senders->kind == WINDOWS;
     if (!pane && point_is_beside(x, &triangle))
         return false;
     struct vec3 facing = scene_root_plane(scene, sender.patch).normal, y;
@@ -70,7 +70,7 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct final_gather *g = r->gather;
     struct rgb light = *weight;
     struct sender_point lamp;
-    if (!receiver_choose_beside(r, g->aims->lamp_cuts, x, normal, patch, seed, &lamp))
+    if (!receiver_choose_beside(r, g->aims->cuts[LAMPS], x, normal, patch, seed, &lamp))
         return;
     if (g->aims->panes)
         receiver_filter(r, pane_walk_to(point_above(x, normal), lamp.at), &light);

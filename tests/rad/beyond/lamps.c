@@ -57,7 +57,7 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
     *exact = factor_of_floor(g.s.scene, 32 + 2 * lamps * lamps);
-    *groups = cuts_at(g.gather->aims->lamp_cuts, g.gather->rows[0].leaf).count;
+    *groups = cuts_at(g.gather->aims->cuts[LAMPS], g.gather->rows[0].leaf).count;
     double mean = mean_of_roots(&g, 0, 32);
     trial_free(&g);
     return mean;
@@ -257,7 +257,7 @@ static void test_choice(void)
         exact += point_triangle_factor(x, up, &t);
     }
     enum { CHOICES = 1 << 16 };
-    struct cuts *cuts = g.gather->aims->lamp_cuts;
+    struct cuts *cuts = g.gather->aims->cuts[LAMPS];
     struct cut cut = cuts_at(cuts, g.gather->rows[0].leaf);
     for (int k = 0; k < CHOICES; k++) {
         struct choice lamp = cuts_choose(cuts, cut, (k + 0.5) / CHOICES);
@@ -282,7 +282,7 @@ static void test_bright_rows(void)
     paint(&soup, 0.0, 100.0);
     struct trial g = gather_scene(&soup, "", 64);
     const struct gather_row *rows = g.gather->rows;
-    double worst = 0.0, bright = senders_power(g.gather->aims->bright);
+    double worst = 0.0, bright = senders_power(g.gather->aims->senders[BRIGHT_PATCHES]);
     int64_t count = 0;
     for (int64_t i = 0, k = 0; i < g.gather->count; i++) {
         double sum = 0.0;
@@ -440,7 +440,7 @@ static void test_shares(void)
     soup_add_box(&soup, point(0.09, 0.79, 0.998), point(0.15, 0.91, 0.999), 1, false);
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "--max-level 0", RAYS);
-    struct cuts *cuts = g.gather->aims->lamp_cuts;
+    struct cuts *cuts = g.gather->aims->cuts[LAMPS];
     cuts_count(cuts);
     struct cut cut = cuts_at(cuts, 0);
     double before = count_lamp(cuts, cut, 2).found;
