@@ -288,10 +288,11 @@ static void test_shots(void)
 {
     enum { COUNT = 1000, MEAN = 256 };
     double worth[COUNT], shared = 0.0, equal = 0.0;
+    int32_t group[COUNT] = {0};
     int shots[COUNT], sum = 0, wrong = 0;
     for (int k = 0; k < COUNT; k++)
         worth[k] = k < 10 ? 0.0 : exp(0.002 * k);
-    shots_share(worth, COUNT, MEAN, shots);
+    shots_share(worth, group, COUNT, 1, MEAN, shots);
     for (int k = 0; k < COUNT; k++) {
         sum += shots[k];
         shared += worth[k] * worth[k] / shots[k];
@@ -304,7 +305,7 @@ static void test_shots(void)
            (double)sum / (MEAN * COUNT), shared / equal);
     for (int k = 0; k < COUNT; k++)
         worth[k] = 0.0;
-    shots_share(worth, COUNT, MEAN, shots);
+    shots_share(worth, group, COUNT, 1, MEAN, shots);
     tap_ok(shots[0] == MEAN && shots[COUNT - 1] == MEAN, "of no worth: all the mean");
 }
 

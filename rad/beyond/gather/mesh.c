@@ -280,6 +280,7 @@ static void share_rays(struct meshing *m)
     struct gather_mesh *mesh = m->mesh;
     const struct forest *forest = m->model->forest;
     double *worth = alloc_array(2 * (size_t)mesh->count, sizeof *worth);
+    int32_t *space = alloc_array(2 * (size_t)mesh->count, sizeof *space);
     int *shots = alloc_array(2 * (size_t)mesh->count, sizeof *shots);
     double reflectance = 0.0, area = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
@@ -293,12 +294,13 @@ static void share_rays(struct meshing *m)
         const struct known *known = &m->known[leaf];
         bool black = is_black(forest, leaf);
         double variance = k % 2 ? known->by_segment : known->by_ray;
+        space[k] = node_space(m->model, leaf);
         worth[k] = black || known->by_ray == IS_EXACT
                        ? -1.0
                        : sqrt(forest_area(forest, leaf) * variance);
     }
-    shots_share_by_space(m->model, mesh->leaves, mesh->count, worth, m->gather->rays,
-                         shots);
+    shots_share(worth, space, 2 * mesh->count, lit_count(m->model), m->gather->rays,
+                shots);
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
     mesh->segments = alloc_array((size_t)mesh->count, sizeof *mesh->segments);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
@@ -313,6 +315,7 @@ static void share_rays(struct meshing *m)
                                                     (area / (double)mesh->count));
     }
     alloc_free(shots);
+    alloc_free(space);
     alloc_free(worth);
 }
 

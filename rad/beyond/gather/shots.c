@@ -7,10 +7,9 @@
 #include "rad/beyond/gather/shots.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 
 #include "geom/alloc.h"
-#include "rad/beyond/gather/lit.h"
 
 /* A leaf gets 2^MOST_DOUBLED times the mean number at most, and 2^-MOST_HALVED at
  * least. */
@@ -38,83 +37,46 @@ static int shots_of(double worth, int mean)
     return worth < 0.0 ? FEWEST : shots_of_power(power_of(worth), mean);
 }
 
-/* A compare function of qsort(); equal numbers are alike. */
-static int compare_worths(const void *left, const void *right)
+/* What a group shares: the worth of the mean number of shots is between two bounds. */
+struct share {
+    double low, high;
+    int64_t shots; /* of all, if the middle is worth the mean */
+    int64_t most;  /* that they may be */
+};
+
+static double middle_of(const struct share *share)
 {
-    double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
+    return 0.5 * (share->low + share->high);
 }
 
-/* The number of leaves with less than this power, of sorted worths. */
-static int64_t count_below(const double *sorted, int64_t count, double unit, int power)
+void shots_share(const double *worth, const int32_t *group, int64_t count, int32_t groups,
+                 int mean, int *shots)
 {
-    int64_t low = 0, high = count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (power_of(sorted[middle] / unit) < power)
-            low = middle + 1;
-        else
-            high = middle;
+    struct share *shares = alloc_array((size_t)groups, sizeof *shares);
+    for (int64_t k = 0; k < count; k++) {
+        struct share *share = &shares[group[k]];
+        if (worth[k] < 0.0) /* the fewest, beside the others */
+            continue;
+        share->high = fmax(share->high, worth[k]);
+        share->most += mean;
     }
-    return low;
-}
-
-/* The shots of all leaves with these sorted worths, if `unit` is worth the mean. */
-static int64_t shots_of_all(const double *sorted, int64_t count, double unit, int mean)
-{
-    int64_t sum = 0, below = 0;
-    for (int power = -MOST_HALVED; power <= MOST_DOUBLED; power++) {
-        int64_t so_far = power < MOST_DOUBLED
-                             ? count_below(sorted, count, unit, power + 1) : count;
-        sum += (so_far - below) * shots_of_power(power, mean);
-        below = so_far;
+    for (int step = 0; step < STEPS; step++) {
+        for (int64_t k = 0; k < count; k++) {
+            struct share *share = &shares[group[k]];
+            if (!(worth[k] < 0.0) && share->high > 0.0)
+                share->shots += shots_of(worth[k] / middle_of(share), mean);
+        }
+        for (int32_t g = 0; g < groups; g++) {
+            bool more = shares[g].shots > shares[g].most;
+            *(more ? &shares[g].low : &shares[g].high) = middle_of(&shares[g]);
+            shares[g].shots = 0;
+        }
     }
-    return sum;
-}
-
-void shots_share(const double *worth, int64_t count, int mean, int *shots)
-{
-    double low = 0.0, high = 0.0, *sorted = alloc_array((size_t)count, sizeof *sorted);
-    int64_t sharing = 0; /* leaves; the others get the fewest */
-    for (int64_t k = 0; k < count; k++)
-        if (!(worth[k] < 0.0))
-            sorted[sharing++] = worth[k];
-    qsort(sorted, (size_t)sharing, sizeof *sorted, compare_worths);
-    if (sharing > 0)
-        high = fmax(0.0, sorted[sharing - 1]);
-    for (int step = 0; step < STEPS && high > 0.0; step++) { /* worth of the mean */
-        double unit = 0.5 * (low + high);
-        bool more = shots_of_all(sorted, sharing, unit, mean) > sharing * mean;
-        *(more ? &low : &high) = unit;
-    }
-    for (int64_t k = 0; k < count; k++)
+    for (int64_t k = 0; k < count; k++) {
+        double high = shares[group[k]].high;
         shots[k] = shots_of(high > 0.0 ? worth[k] / high : 2.0 * worth[k] + 1.0, mean);
-    alloc_free(sorted);
-}
-
-void shots_share_by_space(const struct model *model, const int32_t *leaves, int64_t count,
-                          const double *worth, int mean, int *shots)
-{
-    int32_t spaces = lit_count(model);
-    int64_t *at = alloc_array((size_t)spaces + 1, sizeof *at);
-    double *sorted = alloc_array(2 * (size_t)count, sizeof *sorted);
-    int *dealt = alloc_array(2 * (size_t)count, sizeof *dealt);
-    for (int64_t k = 0; k < 2 * count; k++)
-        at[node_space(model, leaves[k / 2]) + 1]++;
-    for (int32_t s = 0; s < spaces; s++)
-        at[s + 1] += at[s];
-    for (int64_t k = 0; k < 2 * count; k++)
-        sorted[at[node_space(model, leaves[k / 2])]++] = worth[k];
-    for (int32_t s = spaces; s > 0; s--) /* back to where each begins */
-        at[s] = at[s - 1];
-    at[0] = 0;
-    for (int32_t s = 0; s < spaces; s++)
-        shots_share(sorted + at[s], at[s + 1] - at[s], mean, dealt + at[s]);
-    for (int64_t k = 0; k < 2 * count; k++)
-        shots[k] = dealt[at[node_space(model, leaves[k / 2])]++];
-    alloc_free(dealt);
-    alloc_free(sorted);
-    alloc_free(at);
+    }
+    alloc_free(shares);
 }
 
 int shots_of_black(int mean, double part)
