@@ -27,7 +27,6 @@
 #include "geom/lambert.h"
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/gather/path.h"
-#include "rad/beyond/gather/source.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -126,19 +125,13 @@ static struct shot shot_back(const struct receiver *r, const struct aim *aim,
 static double add_shot(struct receiver *r, struct aim *aim, const struct shot *shot,
                        int32_t patch, double factor, uint64_t seed)
 {
-    static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     const struct forest *forest = r->gather->model->forest;
     int32_t root = (int32_t)forest->patches[patch].id.root;
     double before = rgb_sum(r->light);
     aim->fired++;
-    if (receiver_blocker(r, shot->x, shot->y, root) >= 0)
+    if (receiver_is_blocked(r, shot->x, shot->y, root))
         return 0.0;
-    if (r->gather->aims->panes)
-        receiver_see_by_panes(r, aim->senders, shot->x, shot->y, patch, factor, seed);
-    else if (aim->senders->kind == BRIGHT_PATCHES)
-        receiver_see(r, shot->x, shot->y, patch, factor, seed);
-    else
-        receiver_add_source(r, &ALL, sender_light(aim->senders, patch), factor);
+    receiver_see(r, aim->senders, shot->x, shot->y, patch, factor, seed);
     double light = rgb_sum(r->light) - before;
     aim->arrived += light > 0.0;
     return light;

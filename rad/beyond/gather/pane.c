@@ -5,6 +5,13 @@
 
 #include "rad/beyond/sample.h"
 
+struct pane_walk receiver_walk_to(const struct receiver *r, struct vec3 from,
+                                  struct vec3 to)
+{
+    return r->gather->aims->panes ? pane_walk_to(from, to)
+                                  : (struct pane_walk){.left = 0.0};
+}
+
 struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
                                struct vec3 direction, enum met met,
                                const struct point *point)
@@ -13,8 +20,8 @@ struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
     struct pane_walk walk = {origin, direction, HUGE_VAL, -1};
     struct octree_hit hit;
     if (met == MET_FRONT)
-        return pane_walk_to(origin, point->at);
-    if (met == MET_BACK &&
+        return receiver_walk_to(r, origin, point->at);
+    if (met == MET_BACK && r->gather->aims->panes &&
         octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts)) {
         const struct plane *plane = &model->scene->planes[hit.triangle];
         walk.left = -plane_distance(plane, origin) / vec3_dot(plane->normal, direction);
@@ -25,7 +32,8 @@ struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
 bool receiver_puts_aside(struct receiver *r, struct pane_walk walk, int32_t but)
 {
     struct final_gather *g = r->gather;
-    return panes_put_aside(g->aims->panes, walk, but, &g->model->counts);
+    return g->aims->panes &&
+           panes_put_aside(g->aims->panes, walk, but, &g->model->counts);
 }
 
 void receiver_filter(struct receiver *r, struct pane_walk walk, struct rgb *weight)
@@ -36,7 +44,7 @@ void receiver_filter(struct receiver *r, struct pane_walk walk, struct rgb *weig
 void receiver_cross(struct receiver *r, struct pane_walk walk, struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    while (panes_next(g->aims->panes, &walk, &g->model->counts)) {
+    while (g->aims->panes && panes_next(g->aims->panes, &walk, &g->model->counts)) {
         double at[3];
         int32_t leaf = leaf_under(g->model->forest, walk.root, walk.at, at);
         if (rgb_sum(forest_material(g->model->forest, leaf)->reflectance) > 0.0)

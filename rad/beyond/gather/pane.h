@@ -5,10 +5,13 @@
 
 #include "rad/beyond/gather/met.h"
 
-/* The way of a ray from `origin`, to the front or back that it meets, or without end. */
+/* The way of a ray from `origin`, to the front or back that it meets, or without end; and
+ * of a segment. For the functions below alone: any, where there are no panes. */
 struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
                                struct vec3 direction, enum met met,
                                const struct point *point);
+struct pane_walk receiver_walk_to(const struct receiver *r, struct vec3 from,
+                                  struct vec3 to);
 
 /* True if a pane aimed at, other than `but`, brings the light of this way. `but`: a root,
  * or -1. */

@@ -12,8 +12,8 @@
 #include <math.h>
 
 #include "geom/hash.h"
+#include "geom/lambert.h"
 #include "rad/beyond/gather/pane.h"
-#include "rad/beyond/gather/source.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -55,6 +55,63 @@ static bool survives(struct receiver *r, const struct point *point, bool aimed, 
     return u < most;
 }
 
+/* A point of a sender. */
+struct sender_point {
+    int32_t root;
+    struct vec3 at;
+    double share; /* form factor of the sender over the probability of its choice, 1 */
+};
+
+/* Chooses a sender by the cut of a patch beside the leaf, and a point of it above the
+ * horizon of x, by hashes. False if the point is not visible, or its light is brought by
+ * a pane on the way. */
+static bool choose_beside(struct receiver *r, struct cuts *cuts, struct vec3 x,
+                          struct vec3 normal, int32_t patch, uint64_t seed,
+                          struct sender_point *target)
+{
+    const struct forest *forest = r->gather->model->forest;
+    const struct scene *scene = forest->scene;
+    int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
+    struct cut cut = cuts_at(cuts, patch);
+    struct choice sender = cuts_choose(cuts, cut, hash_unit(seed));
+    if (sender.patch < 0)
+        return false;
+    struct triangle triangle = scene_root_triangle(scene, sender.patch);
+    bool pane = cuts->senders->kind == WINDOWS;
+    if (!pane && point_is_beside(x, &triangle))
+        return false;
+    struct vec3 facing = scene_root_plane(scene, sender.patch).normal, y;
+    double factor = point_triangle_factor(x, normal, &triangle);
+    uint64_t at = seed + 2;
+    for (int k = 0; k < TRIES_MOST && factor > 0.0; k++, at = hash_mix(at)) {
+        y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
+        if (!(point_kernel(x, normal, y, facing) > 0.0))
+            continue;
+        *target = (struct sender_point){sender.patch, y, factor * sender.share};
+        struct pane_walk walk = receiver_walk_to(r, point_above(x, normal), y);
+        return !segment_is_stopped(r, x, input, y, sender.patch) &&
+               !receiver_puts_aside(r, walk, pane ? sender.patch : -1);
+    }
+    return false;
+}
+
+/* Adds `weight` times the light of one lamp at a point met. */
+static void aim_beside(struct receiver *r, const struct point *point,
+                       const struct rgb *weight, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    struct rgb light = *weight;
+    struct sender_point lamp;
+    if (!choose_beside(r, g->aims->cuts[LAMPS], point->at, point->normal, point->patch,
+                       seed, &lamp))
+        return;
+    struct vec3 x = point_above(point->at, point->normal);
+    receiver_filter(r, receiver_walk_to(r, x, lamp.at), &light);
+    receiver_add_source(r, &light,
+                        scene_root_material(g->model->scene, lamp.root)->emission,
+                        lamp.share);
+}
+
 /* A path goes on from the point met: adds the emission, unless `aimed` at, and the light
  * of a lamp, and makes a ray of the seed's. False if the point absorbs all. */
 static bool leave(struct receiver *r, const struct point *point, bool aimed,
@@ -68,7 +125,7 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
     *weight = rgb_times(*weight, material->reflectance);
     if (!(rgb_sum(*weight) > 0.0))
         return false;
-    receiver_aim_beside(r, point->at, point->normal, point->patch, weight, seed);
+    aim_beside(r, point, weight, seed);
     *origin = point_above(point->at, point->normal);
     *direction = cosine_direction(point->normal, direction_along(point->normal),
                                   hash_unit(seed + 14), hash_unit(seed + 15));
@@ -119,20 +176,18 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
         !is_aimed_at_beside(r, &point, x))
         return;
     struct rgb light = rgb_scale(*weight, factor);
-    if (r->gather->aims->panes) {
-        struct pane_walk walk = pane_walk_to(x, point.at);
-        if (receiver_puts_aside(r, walk, -1))
-            return;
-        receiver_cross(r, walk, &light);
-    }
+    struct pane_walk walk = receiver_walk_to(r, x, point.at);
+    if (receiver_puts_aside(r, walk, -1))
+        return;
+    receiver_cross(r, walk, &light);
     path_go_on(r, point, x, is_aimed_lamp(r, &point, x), light, hash_mix(seed), false);
 }
 
-void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
-                  double factor, uint64_t seed)
+/* Adds the light of the bright patch at its point y, if rays from x are aimed at it. */
+static void see_bright(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
+                       struct pane_walk walk, double factor, uint64_t seed)
 {
-    const struct final_gather *g = r->gather;
-    const struct forest *forest = g->model->forest;
+    const struct forest *forest = r->gather->model->forest;
     int32_t root = (int32_t)forest->patches[patch].id.root;
     struct point point = {.root = root, .at = y,
                           .normal = scene_root_plane(forest->scene, root).normal};
@@ -141,10 +196,8 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
         return;
     struct rgb weight = rgb_grey(factor);
     r->bright += factor;
-    if (g->aims->panes)
-        receiver_cross(r, pane_walk_to(point_above(x, r->facet.plane.normal), y),
-                       &weight);
-    path_go_on(r, point, x, root_is_lamp(g, root), weight, seed, true);
+    receiver_cross(r, walk, &weight);
+    path_go_on(r, point, x, root_is_lamp(r->gather, root), weight, seed, true);
 }
 
 /* Adds `weight` times the light seen from x through the point y of a pane. Returns the
@@ -173,20 +226,21 @@ static struct rgb see_through(struct receiver *r, struct vec3 x, struct vec3 y,
     return straight;
 }
 
-void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
-                           struct vec3 x, struct vec3 y, int32_t patch, double factor,
-                           uint64_t seed)
+void receiver_see(struct receiver *r, const struct senders *senders, struct vec3 x,
+                  struct vec3 y, int32_t patch, double factor, uint64_t seed)
 {
+    bool window = senders->kind == WINDOWS;
     struct rgb weight = rgb_grey(1.0);
-    struct pane_walk walk = pane_walk_to(point_above(x, r->facet.plane.normal), y);
-    if (receiver_puts_aside(r, walk, senders->kind == WINDOWS ? patch : -1))
+    struct vec3 above = point_above(x, r->facet.plane.normal);
+    struct pane_walk walk = receiver_walk_to(r, above, y);
+    if (receiver_puts_aside(r, walk, window ? patch : -1))
         return;
-    if (senders->kind == WINDOWS) {
+    if (window) {
         r->bright += factor;
         rgb_add(&r->row->straight, 1.0,
-                see_through(r, walk.at, y, rgb_grey(factor), seed, true));
+                see_through(r, above, y, rgb_grey(factor), seed, true));
     } else if (senders->kind == BRIGHT_PATCHES) {
-        receiver_see(r, x, y, patch, factor, seed);
+        see_bright(r, x, y, patch, walk, factor, seed);
     } else {
         receiver_filter(r, walk, &weight);
         receiver_add_source(r, &weight, sender_light(senders, patch), factor);
@@ -200,8 +254,8 @@ static void look_through(struct receiver *r, const struct point *point, struct v
 {
     struct sender_point pane;
     if (!r->gather->aims->panes ||
-        !receiver_choose_beside(r, r->gather->aims->cuts[WINDOWS], point->at,
-                                point->normal, point->patch, seed, &pane))
+        !choose_beside(r, r->gather->aims->cuts[WINDOWS], point->at, point->normal,
+                       point->patch, seed, &pane))
         return;
     weight = rgb_scale(weight, pane.share);
     see_through(r, x, pane.at, weight, hash_mix(seed + 1), false);
@@ -224,14 +278,11 @@ void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aime
         }
         enum met met = trace(r, x, direction, &point);
         r->escaped += met != MET_FRONT;
-        bool through = false;
-        if (r->gather->aims->panes) {
-            struct pane_walk walk = receiver_walk(r, x, direction, met, &point);
-            through = receiver_puts_aside(r, walk, -1);
-            if (through && aims)
-                return;
-            receiver_cross(r, walk, &weight);
-        }
+        struct pane_walk walk = receiver_walk(r, x, direction, met, &point);
+        bool through = receiver_puts_aside(r, walk, -1);
+        if (through && aims)
+            return;
+        receiver_cross(r, walk, &weight);
         if (met != MET_FRONT)
             return;
         aimed = !through && is_aimed_lamp(r, &point, x);

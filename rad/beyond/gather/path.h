@@ -41,15 +41,10 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
 void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
                 struct rgb weight, uint64_t seed, bool aims);
 
-/* Adds the light of the bright patch at its point y, visible from x, with this form
- * factor; or nothing, if rays from x are not aimed at the patch. */
-void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
-                  double factor, uint64_t seed);
-
-/* Adds the light of any sender at its point y, visible from x but for panes, with this
- * form factor; or nothing, if a pane on the way brings that light. */
-void receiver_see_by_panes(struct receiver *r, const struct senders *senders,
-                           struct vec3 x, struct vec3 y, int32_t patch, double factor,
-                           uint64_t seed);
+/* Adds the light of a sender at its point y, visible from x but for panes, with this form
+ * factor; or nothing, if a pane on the way brings that light, or of a bright patch, if
+ * rays from x are not aimed at it. */
+void receiver_see(struct receiver *r, const struct senders *senders, struct vec3 x,
+                  struct vec3 y, int32_t patch, double factor, uint64_t seed);
 
 #endif

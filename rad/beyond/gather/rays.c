@@ -70,26 +70,22 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         look_again(r, origin, direction);
     else
         r->escaped += met != MET_FRONT;
-    struct pane_walk walk = {.left = 0.0};
-    if (r->gather->aims->panes) {
-        walk = receiver_walk(r, origin, direction, met, &point);
-        if (receiver_puts_aside(r, walk, -1)) {
-            r->sums->aside[half]++;
-            return;
-        }
-        if (met != MET_FRONT)
-            receiver_cross(r, walk, &weight);
-    }
-    if (met != MET_FRONT)
+    struct pane_walk walk = receiver_walk(r, origin, direction, met, &point);
+    if (receiver_puts_aside(r, walk, -1)) {
+        r->sums->aside[half]++;
         return;
+    }
+    if (met != MET_FRONT) {
+        receiver_cross(r, walk, &weight);
+        return;
+    }
     r->sums->in_gap += r->kind == RECEIVER_ROW && ray_ends_in_gap(r, origin, point.at);
     find_leaf(forest, &point);
     if (path_is_aimed_at(r, &point, origin)) {
         r->sums->aside[half]++;
         return;
     }
-    if (r->gather->aims->panes)
-        receiver_cross(r, walk, &weight);
+    receiver_cross(r, walk, &weight);
     bool aimed = root_is_lamp(r->gather, point.root);
     if (path_ends(r, &point, origin)) { /* as most do */
         path_add_mesh(r, &point, aimed, &weight);

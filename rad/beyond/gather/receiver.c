@@ -96,3 +96,25 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
     rgb_add(&r->row->source, 1.0, h);
     rgb_add(&r->light, 1.0, h);
 }
+
+bool segment_is_stopped(struct receiver *r, struct vec3 from, int32_t input,
+                        struct vec3 to, int32_t root)
+{
+    struct model *model = r->gather->model;
+    int32_t own[2] = {input, scene_input_of(model->scene, root)}, guess = -1;
+    r->gather->counts.segments++;
+    return octree_blocks_segment(model->octree, from, to, own, &guess, &model->counts);
+}
+
+bool receiver_is_blocked(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root)
+{
+    int32_t input = r->facet.input;
+    if (r->points && r->points->above) {
+        const struct scene *scene = r->gather->model->scene;
+        struct segment segment = segment_make(x, y);
+        if (segment_is_blocked_by(&segment, &scene->triangles[input],
+                                  &scene->planes[input]))
+            return true;
+    }
+    return segment_is_stopped(r, x, input, y, root);
+}

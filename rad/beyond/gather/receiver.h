@@ -69,6 +69,13 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor);
 
+/* True if something is in the way from a point of the receiver to one of a root. */
+bool receiver_is_blocked(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root);
+
+/* The same from a point of any input triangle. */
+bool segment_is_stopped(struct receiver *r, struct vec3 from, int32_t input,
+                        struct vec3 to, int32_t root);
+
 /* The point of the receiver for u and v in [0, 1). */
 static inline struct vec3 receiver_start(const struct receiver *r, double u, double v)
 {
