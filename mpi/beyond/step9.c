@@ -99,7 +99,7 @@ static void share_met(struct gathering *g)
     add_up(g, &g->gather->near->items->area, EACH * patches);
     equation_number_near(e);
     for (int64_t i = 0; i < e->count; i++)
-        own_values(g)[i].band[0] = (double)e->covers[i].outside;
+        own_values(g)[i].band[0] = (double)equation_cover(e, i)->outside;
     share_values(g);
     equation_find_outside(e, g->place, g->all);
     g->balance = balance_start(e, crossed);
@@ -211,7 +211,7 @@ static double solve(struct gathering *g, struct rgb *b, struct rgb *h, struct rg
 {
     const struct model *model = &g->solver->model;
     for (int64_t i = 0; i < g->equation.count; i++)
-        answer[i] = b[i] = model->forest->radiosity[g->equation.patch[i]];
+        answer[i] = b[i] = model->forest->radiosity[equation_leaf(&g->equation, i)];
     struct bicgstab_end end = {
         .residual = 0.5 * model->criterion.tolerance * model->absorptance /
                     lit_count(model), /* of the sum over spaces */
@@ -320,7 +320,8 @@ static void share_answer(struct gathering *g, const struct rgb *b, const double 
     for (int64_t k = 0; k < g->mesh.count; k++)
         answer->straight[g->mesh.leaves[g->leaf[k]]] = g->all[k];
     for (size_t i = 0; i < count; i++)
-        own_values(g)[i] = (struct rgb){{errors[i], (double)e->covers[i].open, 0.0}};
+        own_values(g)[i] = (struct rgb){
+            {errors[i], (double)equation_cover(e, (int64_t)i)->open, 0.0}};
     share_values(g);
     for (int64_t k = 0; k < g->mesh.count; k++) {
         answer->error[g->mesh.leaves[g->leaf[k]]] = (float)g->all[k].band[0];

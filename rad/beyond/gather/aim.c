@@ -20,7 +20,6 @@
 #include "rad/beyond/gather/aim.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
@@ -73,8 +72,8 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
                        volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
         double part = light.band[c] / rgb_sum(light), h = direct * part;
-        r->row->chance[c] += part * part * fmax(0.0, variance);
-        r->row->halves[c] += h * h * apart * apart;
+        r->row->chance.band[c] += part * part * fmax(0.0, variance);
+        r->row->halves.band[c] += h * h * apart * apart;
     }
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
@@ -369,8 +368,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     }
     end_volley(r, &aim.volley, light);
     for (int c = 0; c < BANDS; c++) {
-        r->row->chance[c] = fmax(r->row->chance[c], around.band[c]);
-        r->row->halves[c] = fmax(r->row->halves[c], around.band[c]);
+        r->row->chance.band[c] = fmax(r->row->chance.band[c], around.band[c]);
+        r->row->halves.band[c] = fmax(r->row->halves.band[c], around.band[c]);
     }
 }
 
@@ -394,5 +393,5 @@ void receiver_aim(struct receiver *r)
         r->through = rgb_sub(r->light, rgb_sub(r->row->straight, before));
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
     }
-    memcpy(r->row->of_segments, r->row->chance, sizeof r->row->of_segments);
+    r->row->of_segments = r->row->chance;
 }

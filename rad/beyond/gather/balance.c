@@ -50,7 +50,7 @@ static void sum_up(struct light_balance *b, int columns)
 static void keep_light(struct light_balance *b)
 {
     for (int64_t i = 0; i < b->equation->count; i++) {
-        struct cover *cover = &b->equation->covers[i];
+        struct cover *cover = equation_cover(b->equation, i);
         if (b->closed[balance_of(b, i) - b->flows])
             cover->kept = cover->kept > 0.0f ? 1.0f : 0.0f;
     }
@@ -129,7 +129,8 @@ void balance_close(struct light_balance *b, const struct rgb *from, bool lamps,
     double *term = b->terms;
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
-        double bare = equation_bare_area(e, i), kept = (double)e->covers[i].kept * bare;
+        double bare = equation_bare_area(e, i);
+        double kept = (double)equation_cover(e, i)->kept * bare;
         bool shines = lamps && material_emits(m);
         double more = shines ? equation_shining_area(e, i) - kept : 0.0;
         for (int c = 0; c < BANDS; c++) {
@@ -161,7 +162,7 @@ void balance_absorb(struct light_balance *b, struct rgb *h)
         const struct material *m = equation_material(e, i);
         double area = material_emits(m) ? equation_shining_area(e, i) : 0.0;
         for (int c = 0; c < BANDS; c++) {
-            double on = (double)e->covers[i].kept * m->reflectance.band[c] +
+            double on = (double)equation_cover(e, i)->kept * m->reflectance.band[c] +
                         m->transmittance.band[c];
             *term++ = area * m->emission.band[c]; /* emitted */
             *term++ = equation_bare_area(e, i) * (1.0 - on) * h[i].band[c];
@@ -183,16 +184,14 @@ bool balance_find_more(struct light_balance *b, const struct rgb *radiosity)
     bool more = false;
     for (int64_t i = 0; i < e->count; i++) {
         struct rgb rho = equation_material(e, i)->reflectance;
-        double kept = (double)e->covers[i].kept, bare = equation_bare_area(e, i);
-        const struct forest *forest = e->gather->model->forest;
-        uint32_t root = forest->patches[e->patch[i]].id.root;
+        double kept = (double)equation_cover(e, i)->kept, bare = equation_bare_area(e, i);
         double *term = &b->terms[3 * i], lost = (1.0 - kept) * bare;
         term[0] = 0.0; /* absorbed */
         for (int c = 0; c < BANDS; c++)
             term[0] += bare * (1.0 - rho.band[c]) * radiosity[i].band[c];
-        bool tells = kept > 0.0 && !e->mesh->cut[e->patch[i]];
+        bool tells = kept > 0.0 && !e->mesh->cut[equation_leaf(e, i)];
         term[1] = tells ? lost * rgb_sum(radiosity[i]) : 0.0;
-        term[2] = scene_is_sky(forest->scene, (int32_t)root);
+        term[2] = scene_is_sky(e->gather->model->scene, equation_root(e, i));
     }
     sum_up(b, 3);
     for (int32_t s = 0; s < balances_of(b); s++) {
@@ -210,7 +209,7 @@ void balance_find_unsure(struct light_balance *b, const struct rgb *h,
 {
     const struct equation *e = b->equation;
     for (int64_t i = 0; i < e->count; i++) {
-        double bare = equation_bare_area(e, i), kept = (double)e->covers[i].kept;
+        double bare = equation_bare_area(e, i), kept = (double)equation_cover(e, i)->kept;
         double *term = &b->terms[(BANDS + 1) * i];
         term[BANDS] = 0.0; /* straight from lamps */
         for (int c = 0; c < BANDS; c++) {

@@ -91,8 +91,8 @@ void claim_find_noise(const struct equation *e, struct rgb *by_rays,
                               sums[i].band[c] * sums[i].band[c] / all.band[c];
             bool any = variance[0] > 0.0 && variance[1] > 0.0;
             double change = any ? variance[1] / variance[0] : 1.0;
-            double segments = gather->rows[row].of_segments[c];
-            by_rays[row].band[c] = change * (gather->rows[row].chance[c] - segments);
+            double segments = gather->rows[row].of_segments.band[c];
+            by_rays[row].band[c] = change * (gather->rows[row].chance.band[c] - segments);
             by_segments[row].band[c] = segments;
         }
     }
@@ -173,8 +173,8 @@ static void classify(const struct equation *e, struct noise *classes, int32_t *o
         double rho = equation_material(e, i)->reflectance.band[k % BANDS];
         double weight = e->areas[i] * rho * rho;
         own[k] = CLASSES * own[k] + class_of(light[k], sum[0] / sum[1]);
-        terms[COLUMNS * k] = weight * rows[i].halves[k % BANDS];
-        terms[COLUMNS * k + 1] = weight * rows[i].chance[k % BANDS];
+        terms[COLUMNS * k] = weight * rows[i].halves.band[k % BANDS];
+        terms[COLUMNS * k + 1] = weight * rows[i].chance.band[k % BANDS];
     }
     total_groups(&e->totals, terms, own, all, CLASSES * spaces, COLUMNS,
                  (double *)classes);
@@ -333,7 +333,7 @@ void claim_errors(const struct light_balance *balance, double remaining,
         }
         term->by_rays = e->areas[i] * square[0];
         term->by_mesh = e->areas[i] * square[1];
-        bool shown = e->covers[i].outside > 0.0f; /* nothing hides all of it */
+        bool shown = equation_cover(e, i)->outside > 0.0f; /* nothing hides all of it */
         if (!shown || !(square[0] + square[1] + own > 0.0))
             continue;
         by_rays[listed] = square[0] > 0.0 ? sqrt(square[0] / own) : 0.0;

@@ -51,11 +51,9 @@ struct equation equation_start(struct final_gather *gather,
     const struct forest *forest = gather->model->forest;
     size_t count = (size_t)mesh->count;
     struct equation e = {.gather = gather, .mesh = mesh, .totals = totals};
-    e.patch = alloc_array(count, sizeof *e.patch);
     e.number = alloc_array(count, sizeof *e.number);
     e.space = alloc_array(count, sizeof *e.space);
     e.areas = alloc_array(count, sizeof *e.areas);
-    e.covers = alloc_array(count, sizeof *e.covers);
     e.near = alloc_array(count, sizeof *e.near);
     e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
     e.radiosity = alloc_array((size_t)forest->count, sizeof *e.radiosity);
@@ -65,11 +63,9 @@ struct equation equation_start(struct final_gather *gather,
 
 void equation_free(struct equation *e)
 {
-    alloc_free(e->patch);
     alloc_free(e->number);
     alloc_free(e->space);
     alloc_free(e->areas);
-    alloc_free(e->covers);
     alloc_free(e->near);
     alloc_free(e->fired);
     alloc_free(e->radiosity);
@@ -92,11 +88,9 @@ void equation_make_row(void *equation, int64_t number)
                          mesh->exact[number]);
     fired[0] += counts->rays;
     fired[1] += counts->escaped;
-    e->patch[leaf] = patch;
     e->number[leaf] = number;
     e->space[leaf] = space;
     e->areas[leaf] = forest_area(model->forest, patch);
-    e->covers[leaf] = e->gather->rows[leaf].cover;
 }
 
 void equation_number_near(struct equation *e)
@@ -137,10 +131,8 @@ void equation_find_outside(struct equation *e, const int32_t *place,
 
 double equation_shining_area(const struct equation *e, int64_t leaf)
 {
-    const struct forest *forest = e->gather->model->forest;
-    uint32_t root = forest->patches[e->patch[leaf]].id.root;
-    const struct cover *cover = &e->covers[leaf];
-    bool lamp = root_is_lamp(e->gather, (int32_t)root);
+    const struct cover *cover = equation_cover(e, leaf);
+    bool lamp = root_is_lamp(e->gather, equation_root(e, leaf));
     return (lamp ? e->areas[leaf] : equation_bare_area(e, leaf)) *
            (double)cover->outside * (double)cover->kept;
 }
@@ -185,7 +177,7 @@ void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
                    struct rgb *seen)
 {
     for (int64_t i = 0; i < e->count; i++) {
-        double share = fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
+        double share = fmax(LEAST_OUTSIDE, (double)equation_cover(e, i)->outside);
         struct rgb emission = equation_material(e, i)->emission;
         seen[i] = b[i];
         for (int c = 0; c < BANDS && share < 1.0; c++) {
@@ -230,7 +222,8 @@ void equation_set_shown(struct equation *e, const int64_t *watts)
             continue;
         const struct gather_near *near = &nears->items[k];
         const struct rgb *own = &e->radiosity[equation_place(e, i)];
-        double area = e->areas[i] * fmax(LEAST_OUTSIDE, (double)e->covers[i].outside);
+        const struct cover *cover = equation_cover(e, i);
+        double area = e->areas[i] * fmax(LEAST_OUTSIDE, (double)cover->outside);
         double part = (double)near->area * nears->unit_area / area;
         double unit = nears->unit_watts / (area * fmax(1.0, part));
         double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
@@ -286,13 +279,11 @@ double *equation_weigh(const struct equation *e, const struct rgb *b)
 void equation_powers(const struct equation *e, const struct rgb *h,
                      const struct rgb *b, double *absorbed, double *escaped)
 {
-    const struct model *model = e->gather->model;
     double sums[3], *terms = alloc_array(3 * (size_t)e->count, sizeof *terms);
     for (int64_t i = 0; i < e->count; i++) {
         const struct material *m = equation_material(e, i);
-        uint32_t root = model->forest->patches[e->patch[i]].id.root;
         double bare = equation_bare_area(e, i), *term = &terms[3 * i];
-        if (scene_is_sky(model->scene, (int32_t)root))
+        if (scene_is_sky(e->gather->model->scene, equation_root(e, i)))
             continue;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c], stays = 1.0 - m->transmittance.band[c];

@@ -24,11 +24,9 @@ struct equation {
     const struct gather_mesh *mesh; /* borrowed */
     struct totals totals;   /* over leaves, a band at a time */
     int64_t count;          /* leaves of this rank */
-    int32_t *patch;         /* [count] local number */
     int64_t *number;        /* [count] in the mesh */
     int32_t *space;         /* [count] */
     double *areas;          /* [count] square scene units */
-    struct cover *covers;   /* [count] */
     struct too_near *near;  /* [near_count] of all ranks, once numbered */
     int64_t near_count;
     int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
@@ -42,22 +40,39 @@ struct equation equation_start(struct final_gather *gather,
                                const struct gather_mesh *mesh, struct totals totals);
 void equation_free(struct equation *e);
 
+/* The local number of a leaf, its root, and what covers it. */
+static inline int32_t equation_leaf(const struct equation *e, int64_t leaf)
+{
+    return e->gather->rows[leaf].leaf;
+}
+
+static inline int32_t equation_root(const struct equation *e, int64_t leaf)
+{
+    const struct patch *patches = e->gather->model->forest->patches;
+    return (int32_t)patches[equation_leaf(e, leaf)].id.root;
+}
+
+static inline struct cover *equation_cover(const struct equation *e, int64_t leaf)
+{
+    return &e->gather->rows[leaf].cover;
+}
+
 /* The material of a leaf, and its bare area, square scene units. */
 static inline const struct material *equation_material(const struct equation *e,
                                                        int64_t leaf)
 {
-    return forest_material(e->gather->model->forest, e->patch[leaf]);
+    return forest_material(e->gather->model->forest, equation_leaf(e, leaf));
 }
 
 static inline double equation_bare_area(const struct equation *e, int64_t leaf)
 {
-    return e->areas[leaf] * (double)e->covers[leaf].bare;
+    return e->areas[leaf] * (double)equation_cover(e, leaf)->bare;
 }
 
 /* The place of a leaf in e->radiosity. */
 static inline int32_t equation_place(const struct equation *e, int64_t leaf)
 {
-    return e->gather->place[e->patch[leaf]];
+    return e->gather->place[equation_leaf(e, leaf)];
 }
 
 /* The area of a leaf whose emission arrives: of a lamp the part outside of things, for

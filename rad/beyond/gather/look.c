@@ -71,8 +71,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             double part = rho->band[c], square = 0.25 * part * part;
             look.reflected[k][c] =
                 (float)(part * (row.straight.band[c] + sums.h.band[c]));
-            variance += square * row.chance[c];
-            by_segments += square * row.of_segments[c];
+            variance += square * row.chance.band[c];
+            by_segments += square * row.of_segments.band[c];
         }
     }
     look.noise = fmax(0.0, variance - variance_in_common(each, rays, rho));

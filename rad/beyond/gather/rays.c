@@ -120,8 +120,8 @@ static void add_variances(struct receiver *r)
         if (count[0] > 0.0 && count[1] > 0.0)
             apart = 0.5 * all * (r->sums->half[0].band[c] / count[0] -
                                  r->sums->half[1].band[c] / count[1]);
-        r->row->chance[c] += fmax(0.0, r->sums->squares.band[c] - mean2);
-        r->row->halves[c] += apart * apart;
+        r->row->chance.band[c] += fmax(0.0, r->sums->squares.band[c] - mean2);
+        r->row->halves.band[c] += apart * apart;
     }
 }
 

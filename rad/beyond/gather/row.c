@@ -77,16 +77,10 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct gather_row row = {.leaf = point.patch};
     struct ray_sums sums = {.each = NULL};
     struct receiver r = receiver_of_points(gather, points, seed, count, &row, &sums);
-    struct gather_light light;
     r.lamps_alone = !all;
     receiver_aim(&r);
     if (all)
         receiver_fire(&r);
-    for (int c = 0; c < BANDS; c++) {
-        light.variance.band[c] = row.chance[c];
-        light.halves.band[c] = row.halves[c];
-    }
-    light.straight = row.straight;
-    light.rest = sums.h;
-    return light;
+    return (struct gather_light){.straight = row.straight, .rest = sums.h,
+                                 .variance = row.chance, .halves = row.halves};
 }

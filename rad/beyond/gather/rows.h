@@ -31,11 +31,11 @@ struct gather_row {
     int64_t end;       /* of its terms, which begin at the end of the row before */
     struct rgb source; /* irradiance from lamps, W/m^2 */
     struct rgb straight; /* irradiance straight from lamps, W/m^2 */
-    double chance[BANDS]; /* variance of H if rays and segments were chosen by chance,
-                             (W/m^2)^2, for the links' radiosities */
-    double of_segments[BANDS]; /* the part of `chance` by segments to lamps */
-    double halves[BANDS]; /* squared difference of the first and second half of the
-                             rays: a sample of the variance by the sequence */
+    struct rgb chance; /* variance of H if rays and segments were chosen by chance,
+                          (W/m^2)^2, for the links' radiosities */
+    struct rgb of_segments; /* the part of `chance` by segments to lamps */
+    struct rgb halves; /* squared difference of the first and second half of the
+                          rays: a sample of the variance by the sequence */
     struct cover cover;
 };
 

@@ -31,7 +31,7 @@ static double absorbed_part(struct scene *scene, double first, double *off)
     for (int64_t i = 0; i < mesh.count; i++) {
         equation_make_row(&e, i);
         place[i] = equation_place(&e, i);
-        h[i].band[0] = (double)e.covers[i].outside;
+        h[i].band[0] = (double)equation_cover(&e, i)->outside;
     }
     equation_number_near(&e);
     equation_find_outside(&e, place, h);
