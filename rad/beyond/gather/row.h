@@ -22,7 +22,7 @@ struct cover {
     float outside; /* of the leaf outside of things */
     float open;    /* of the leaf outside of things and of narrow gaps */
     float bare;    /* of `outside` not covered by faces in its plane */
-    float kept;    /* of the leaf's light arriving on fronts, by where its own rays end */
+    float kept;    /* of the leaf's light that arrives on fronts, as its rays do */
 };
 
 /* The form factors from a leaf to all patches in its view. */
@@ -32,7 +32,7 @@ struct gather_row {
     struct rgb source; /* irradiance from lamps, W/m^2 */
     struct rgb straight; /* irradiance straight from lamps, W/m^2 */
     struct rgb chance; /* variance of H if rays and segments were chosen by chance,
-                          (W/m^2)^2, for the solution's radiosities */
+                          (W/m^2)^2, for the links' radiosities */
     struct rgb of_segments; /* the part of `chance` by segments to lamps */
     struct rgb halves; /* squared difference of the first and second half of the
                           rays: a sample of the variance by the sequence */
