@@ -8,6 +8,7 @@
  *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, obj.c, scene.c
  *     covered patches, interpenetration  58-panel.sh
  *     scale, faces without area, wide grounds   65-invariance.sh
+ *     dim spaces beside bright ones   58-panel.sh
  *     16 levels                          options.c refuses them; 15: 58-panel.sh
  *     leaks, faces twice, sheets on floors, tiny lamps, flipped faces   58-panel.sh
  *     oscillation, termination           a run of each test converges
@@ -143,108 +144,6 @@ static void test_order(bool turn)
     solution_free(&two);
 }
 
-/* --- spaces --- */
-
-/* Area times radiosity over area, of the roots first .. first + count - 1. W/m^2, first
- * band. */
-static double mean_radiosity(const struct solution *s, int32_t first, int32_t count)
-{
-    const struct forest *forest = s->solver->model.forest;
-    double light = 0.0, area = 0.0;
-    for (int32_t root = first; root < first + count; root++) {
-        light += forest_area(forest, root) * radiosity(s, root);
-        area += forest_area(forest, root);
-    }
-    return light / area;
-}
-
-/* A closed room of 32 triangles from (x, 0, 0) on, with a box on its floor, and a lamp
- * below its ceiling, unless this is 0. */
-static void add_lit_room(struct soup *soup, double x, double size, double lamp)
-{
-    soup_add_box(soup, point(x, 0, 0), point(x + size, size, size), 1, true);
-    paint(soup, 0.5, 0.0);
-    soup_add_box(soup, point(x + 0.2 * size, 0.2 * size, 0),
-                 point(x + 0.5 * size, 0.6 * size, 0.4 * size), 1, false);
-    paint(soup, 0.3, 0.0);
-    soup_add_box(soup, point(x + 0.4 * size, 0.4 * size, 0.9 * size),
-                 point(x + 0.6 * size, 0.6 * size, 0.95 * size), 1, false);
-    paint(soup, 0.2, lamp);
-}
-
-enum { ROOM_ROOTS = 36 };
-
-/* Of a room whose first root is given: the number of leaves, the mean of what the walls
- * reflect, W/m^2, and the RMS over the walls of the bound on errors, W/m^2. */
-struct room {
-    double leaves, light, error;
-};
-
-static struct room room_at(const struct solution *s, int32_t first)
-{
-    const struct forest *forest = s->solver->model.forest;
-    struct room room = {0.0, mean_radiosity(s, first, 12), 0.0};
-    double area = 0.0;
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
-        int32_t root = (int32_t)forest->patches[leaf].id.root - first;
-        double error = (double)s->solver->beyond->answer->error[leaf];
-        room.leaves += root >= 0 && root < ROOM_ROOTS;
-        if (root < 0 || root >= 12)
-            continue;
-        area += forest_area(forest, leaf);
-        room.error += forest_area(forest, leaf) * error * error;
-    }
-    room.error = sqrt(room.error / area);
-    return room;
-}
-
-static bool is_within(double a, double b, double part)
-{
-    return fabs(a - b) <= part * b;
-}
-
-/* Beside a bright room, behind a wall without thickness or far away, a dim one of any
- * size has the leaves, the light and the errors that it has alone. (Leaves and errors are
- * by chance: rooms differ in the order of faces.) One without a lamp is dark. What is
- * told of all is a fifth more at most: looks have spent segments on the other lamp. */
-static void test_dim_room(double x, double size, double lamp, const char *words)
-{
-    struct soup soup = {0};
-    add_lit_room(&soup, x, size, 1.0);
-    struct solution alone = solve_soup(&soup, words);
-    add_lit_room(&soup, 0.0, 1.0, 1.0);
-    struct solution bright = solve_soup(&soup, words);
-    add_lit_room(&soup, 0.0, 1.0, 1.0);
-    add_lit_room(&soup, x, size, lamp);
-    add_lit_room(&soup, -2.0, 2.0, 0.0);
-    struct solution s = solve_soup(&soup, words);
-    struct room dim = room_at(&s, ROOM_ROOTS), dim_alone = room_at(&alone, 0);
-    struct room lit = room_at(&s, 0), lit_alone = room_at(&bright, 0);
-    tap_ok(is_within(dim.leaves, dim_alone.leaves, 0.1) &&
-               is_within(dim.light, lamp * dim_alone.light, 0.01) &&
-               is_within(dim.error, lamp * dim_alone.error, 0.1),
-           "a room of %.1f with a lamp of %.0e: %.0f leaves (%.0f alone), %.3f of the "
-           "light, %.3f of the error",
-           size, lamp, dim.leaves, dim_alone.leaves, dim.light / lamp / dim_alone.light,
-           dim.error / lamp / dim_alone.error);
-    tap_ok(is_within(lit.leaves, lit_alone.leaves, 0.05) &&
-               is_within(lit.light, lit_alone.light, 0.001) &&
-               is_within(lit.error, lit_alone.error, 0.05),
-           "beside which is one of 1: %.0f leaves (%.0f alone), %.4f of the light, %.3f "
-           "of the error",
-           lit.leaves, lit_alone.leaves, lit.light / lit_alone.light,
-           lit.error / lit_alone.error);
-    double told = alone.solver->beyond->answer->counts.error;
-    tap_ok(mean_radiosity(&s, 2 * ROOM_ROOTS, ROOM_ROOTS) == 0.0 &&
-               is_within(s.solver->beyond->answer->counts.error, told, 0.2),
-           "and a dark one; the error of all is %.2f %%, alone %.2f %%",
-           100.0 * s.solver->beyond->answer->counts.error, 100.0 * told);
-    solution_free(&alone);
-    solution_free(&bright);
-    solution_free(&s);
-}
-
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -252,9 +151,6 @@ int main(int argc, char **argv)
     test_linearity();
     test_order(false);
     test_order(true);
-    test_dim_room(1.0, 1.0, 1e-3, "");
-    test_dim_room(4.0, 0.3, 1e-6, "");
-    test_dim_room(1.0, 3.0, 1e-9, "");
     comm_stop(&world_comm);
     return tap_done();
 }
