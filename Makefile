@@ -113,7 +113,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint shading mesh render options progress screened stop norms \
-        stability gaps converge linking exchange conjugate exact
+        stability converge linking exchange conjugate exact
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 
@@ -159,9 +159,8 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 # The truth, for the tests and benches that compare phr with it.
 TRUTH = $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
-$(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: \
-    $(BUILD)/tests/%.o $(TRUTH) \
-        $(BUILD)/libphr.a
+$(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/tests/%: \
+    $(BUILD)/tests/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 pathtracer: build/pathtracer

@@ -13,7 +13,7 @@ mkdir -p "$logs"
 passed=0
 failed=0
 # Those of more than ten seconds, longest first.
-long="58-panel 60-ranks 67-restart 72-faults 56-pace 57-viewfactors gaps 51-storeys"
+long="58-panel 60-ranks 67-restart 72-faults 56-pace 57-viewfactors 51-storeys"
 
 # judge NAME STATUS SECONDS: shows the verdict on a test from its log, and adds it to the
 # counts.

@@ -50,7 +50,7 @@ NR == FNR {
     lost[$1] = lost[$1] || $11 == "-"
     value[$1, "power"] = $6; value[$1, "rms"] = $12; value[$1, "worst"] = $13
     value[$1, "held"] = $16; value[$1, "specks"] = $19; value[$1, "peak"] = $23
-    value[$1, "claim"] = $18
+    value[$1, "claim"] = $18; value[$1, "error"] = $7
     value[$1, "said"] = $12 > 0 ? $7 / $12 : "-"
     sum[$1] += $11
     squares[$1] += $11 ^ 2

@@ -153,8 +153,10 @@ while IFS='|' read -r name scene options by limits; do
         kept=$by
         case " $by" in *" paths"*)
             paths=${by##*paths} paths=${paths#/} by=${by%%paths*}
-            if [ -n "$CHECK" ]; then by=$(echo "$by" | sed 's/of=[^ ]*//')
-            else truth $((SAMPLES / ${paths:-1})); by=$by$ref; fi ;;
+            case $CHECK/$limits in
+            /* | *held=*) truth $((SAMPLES / ${paths:-1})); by=$by$ref ;;
+            *) by=$(echo "$by" | sed 's/of=[^ ]*//') ;;
+            esac ;;
         esac
         if [ "$options" = factors ]; then
             factors

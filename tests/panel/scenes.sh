@@ -745,6 +745,26 @@ window_room() { # of 5 x 4 x 2.7 m, with a table, below a sky that a window show
     view .4 3.6 1.7 3 .3 1 65
 }
 
+to_the_sky() { # SIGN: a room whose window shows ground and a sky; a black plain below
+    paint wall .7 0
+    sheet z 0 + 0 0 4 3
+    sheet z 2.5 - 0 0 4 3
+    sheet x 0 + 0 0 3 2.5
+    sheet x 4 - 0 0 3 2.5
+    sheet y 3 - 0 0 4 2.5
+    sheet y 0 + 0 0 4 2.5 .8 1 3.2 2.2
+    block 1 1 .7 2.6 1.8 .73
+    block 1.2 1.3 .731 1.5 1.6 .931
+    block 3 2 .002 3.6 2.6 1.202
+    block .3 2.4 .002 1.8 2.9 1.902
+    paint ground .3 0
+    sheet z -.5 + -8 -6 12 -.2
+    paint sky 0 5
+    sheet y -6 + -8 -3 12 12
+    paint plain 0 0
+    sheet z -4 "$1" -40 -6 40 40
+}
+
 level_plate() { # RHO
     paint plate "$1" 0
     sheet z 0 + 0 0 2 1
@@ -1002,6 +1022,60 @@ back_to_back() { # E_LEFT E_RIGHT: sealed rooms that share a wall without thickn
         sheet z .85 - "$2.3" .3 "$2.7" .7
     done
     view 1.8 .8 .5 1 .2 .3 80
+}
+
+gapped() { # a room in which things hang and stand 2 mm apart; lamps fill recesses
+    paint wall .7 0
+    sheet z 0 + 0 0 4 4
+    sheet x 0 + 0 0 4 2.5
+    sheet x 4 - 0 0 4 2.5
+    sheet y 0 + 0 0 4 2.5
+    sheet y 4 - 0 0 4 2.5
+    for x in "0 .8" ".8 1.4" "1.4 2.6" "2.6 3.2" "3.2 4"; do
+        for y in "0 .8" ".8 1.4" "1.4 2.6" "2.6 3.2" "3.2 4"; do
+            field_of_ceiling $x $y
+        done
+    done
+    paint thing .4 0
+    block .5 .002 1.3 1.3 .022 1.9
+    block 1.6 .002 1.4 2 .022 1.7
+    block .002 1 1.2 .022 2.2 2
+    block 3.988 .4 1.3 3.998 .9 2
+    block 3.698 1.5 1.4 3.998 2.1 1.8
+    block 3.698 2.102 1.4 3.998 2.702 1.8
+    block 1.2 1.4 .72 2.6 2.2 .75
+    for x in 1.22 2.53; do
+        block $x 1.42 .002 "$(of "$x + .05")" 1.47 .718
+        block $x 2.13 .002 "$(of "$x + .05")" 2.18 .718
+    done
+    block 1.5 1.5 .752 1.71 1.8 .753
+    block .8 1 .002 3 2.6 .01
+    block 1 3.698 1 2 3.998 1.02
+    block 1 3.698 1.3 2 3.998 1.32
+    each 0 15 gapped_book
+}
+field_of_ceiling() { # X0 X1 Y0 Y1: a recess of 5 cm with a lamp where both are of .6 m
+    case "$1 $3" in
+    ".8 .8" | ".8 2.6" | "2.6 .8" | "2.6 2.6") ;;
+    *) sheet z 2.5 - $1 $3 $2 $4
+        return ;;
+    esac
+    sheet z 2.55 - $1 $3 $2 $4
+    sheet x $1 + $3 2.5 $4 2.55
+    sheet x $2 - $3 2.5 $4 2.55
+    sheet y $3 + $1 2.5 $2 2.55
+    sheet y $4 - $1 2.5 $2 2.55
+    set -- $(of "$1 + .002") $(of "$2 - .002") $(of "$3 + .002") $(of "$4 - .002")
+    paint lamp .5 20
+    sheet z 2.51 - $1 $3 $2 $4
+    paint housing .5 0
+    sides $1 $3 2.51 $2 $4 2.548 x- x+ y- y+ z+
+    paint wall .7 0
+}
+gapped_book() {
+    block $(awk -v k=$k 'BEGIN {
+        x = 1 + .037 * k; print x, 3.75, 1.022, x + .035, 3.998,
+            1.24 + .03 * sin(7 * k) }')
 }
 
 contact() { # a block on a floor, one that floats
