@@ -129,15 +129,7 @@ factors() {
 figures=$folder/figures
 : >"$figures"
 [ -z "$BEFORE" ] || before=$(phr_of "$BEFORE")
-awk -F, 'FILENAME ~ /csv$/ { right["cases:" $1] = $3; next }
-    /^#/ { next } { line = line $0 } sub(/\\$/, "", line) { next }
-    line ~ /\|/ {
-        gsub(/ +/, " ", line)
-        while (match(line, /cases:[^ |]+/))
-            line = substr(line, 1, RSTART - 1) right[substr(line, RSTART, RLENGTH)] \
-                substr(line, RSTART + RLENGTH)
-        print line
-    } { line = "" }' docs/oracle/cases.csv tests/panel/table >"$folder/lines"
+awk -f tests/panel/lines.awk docs/oracle/cases.csv tests/panel/table >"$folder/lines"
 while IFS='|' read -r name scene options by limits; do
     starred=${name%"${name#?}"} name=$(echo ${name#\*})
     [ -z "$CHECK" ] || [ "$starred" = '*' ] || continue
