@@ -135,6 +135,14 @@ static inline double plane_distance(const struct plane *plane, struct vec3 x)
     return vec3_dot(plane->normal, x) - plane->offset;
 }
 
+/* How far ahead of x the plane is, in lengths of the direction; 0 along the plane. */
+static inline double plane_ahead(const struct plane *plane, struct vec3 x,
+                                 struct vec3 direction)
+{
+    double rise = vec3_dot(plane->normal, direction);
+    return rise != 0.0 ? -plane_distance(plane, x) / rise : 0.0;
+}
+
 /* The largest distance of a corner in front of the plane; below 0 if all lie behind. */
 static inline double triangle_reach(const struct triangle *t, const struct plane *plane)
 {

@@ -175,8 +175,7 @@ static double *favour_spaces(const struct model *model)
     int32_t roots = model->forest->root_count;
     double *favour = alloc_array((size_t)roots, sizeof *favour);
     for (int32_t root = 0; root < roots; root++)
-        favour[root] =
-            model->spaces ? space_dimness(model->spaces, (uint32_t)root) : 1.0;
+        favour[root] = space_dimness(model->spaces, (uint32_t)root);
     return favour;
 }
 

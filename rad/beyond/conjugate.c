@@ -121,7 +121,7 @@ double conjugate_missing(const struct conjugate *cg, const struct forest *forest
     double sum;
     for (int64_t i = 0; i < cg->count; i++) {
         uint32_t root = forest->patches[cg->leaves[i]].id.root;
-        double dimness = spaces ? space_dimness(spaces, root) : 1.0;
+        double dimness = space_dimness(spaces, root);
         cg->terms[i] = 0.0;
         for (int c = 0; c < BANDS; c++)
             cg->terms[i] +=

@@ -75,8 +75,7 @@ static double distance_to(const struct scene *scene, int32_t root, struct vec3 f
                           struct vec3 direction)
 {
     struct plane plane = scene_root_plane(scene, root);
-    double fall = -vec3_dot(plane.normal, direction);
-    return fall > 0.0 ? plane_distance(&plane, from) / fall : 0.0;
+    return plane_ahead(&plane, from, direction);
 }
 
 /* True if nothing is in the way from x to y, on a lamp. */

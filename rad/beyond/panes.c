@@ -63,8 +63,7 @@ bool panes_next(const struct panes *panes, struct pane_walk *walk,
     while (walk->left > 0.0 && octree_first_hit(panes->octree, walk->at, walk->direction,
                                                 false, &hit, counts)) {
         struct plane plane = panes->planes[hit.triangle];
-        double along = -plane_distance(&plane, walk->at) /
-                       vec3_dot(plane.normal, walk->direction);
+        double along = plane_ahead(&plane, walk->at, walk->direction);
         struct vec3 beyond = vec3_scale(plane.normal, hit.front ? -1.0 : 1.0);
         if (!(along <= walk->left))
             return false;

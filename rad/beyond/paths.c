@@ -121,10 +121,8 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
                           pathtracer->counts))
         return false;
     const struct plane *plane = &pathtracer->scene->planes[hit.triangle];
-    double fall = -vec3_dot(plane->normal, direction);
-    double along = fall != 0.0 ? plane_distance(plane, origin) / fall : 0.0;
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
-    q->x = vec3_add(origin, vec3_scale(direction, along));
+    q->x = vec3_add(origin, vec3_scale(direction, plane_ahead(plane, origin, direction)));
     return q->root >= 0;
 }
 

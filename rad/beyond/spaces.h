@@ -37,10 +37,11 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
 struct spaces *spaces_create(const struct scene *scene, const int32_t *met);
 void spaces_destroy(struct spaces *spaces); /* NULL: none */
 
-/* How many times the light of a root's space there is in the brightest, 1 or more. */
+/* How many times the light of a root's space there is in the brightest, 1 or more.
+ * `spaces`: NULL for one. */
 static inline double space_dimness(const struct spaces *spaces, uint32_t root)
 {
-    return spaces->light[0] / spaces->light[spaces->of[root]];
+    return spaces ? spaces->light[0] / spaces->light[spaces->of[root]] : 1.0;
 }
 
 /* The light of the scene, W in square scene units: the power of lamps (of a sky what

@@ -110,11 +110,11 @@ static struct shot shot_back(const struct receiver *r, const struct aim *aim,
     sequence_point(&aim->sequence, (uint32_t)index, u);
     struct vec3 d = cosine_direction(normal, direction_along(normal), u[0], u[1]);
     struct shot shot = {.y = triangle_of_square(&sender->triangle, u[2], u[3])};
-    double fall = -vec3_dot(r->facet.plane.normal, d);
-    double along = fall > 0.0 ? plane_distance(&r->facet.plane, shot.y) / fall : 0.0;
+    double along = plane_ahead(&r->facet.plane, shot.y, d);
     shot.x = vec3_add(shot.y, vec3_scale(d, along));
     triangle_weights(&r->facet.triangle, shot.x, w);
-    if (along > 0.0 && w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0)
+    bool front = along > 0.0 && vec3_dot(r->facet.plane.normal, d) < 0.0;
+    if (front && w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0)
         shot.kernel = 1.0;
     return shot;
 }

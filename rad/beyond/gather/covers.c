@@ -71,8 +71,7 @@ bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end)
     if (height * height > most ||
         !octree_first_hit(model->octree, x, normal, false, &hit, &model->counts))
         return false;
-    const struct plane *above = &model->scene->planes[hit.triangle];
-    height = plane_distance(above, x) / vec3_dot(above->normal, normal);
+    height = plane_ahead(&model->scene->planes[hit.triangle], x, normal);
     return height * height <= most;
 }
 

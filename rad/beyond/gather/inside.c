@@ -28,8 +28,7 @@ static struct crossing next_face(struct model *model, struct vec3 origin,
     if (!octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts))
         return (struct crossing){.input = -1};
     struct plane plane = model->scene->planes[hit.triangle];
-    double fall = vec3_dot(plane.normal, direction);
-    double along = fall != 0.0 ? -plane_distance(&plane, origin) / fall : 0.0;
+    double along = plane_ahead(&plane, origin, direction);
     bool twin = scene_has_twin(model->scene, hit.triangle);
     return (struct crossing){
         hit.triangle, !hit.front && !twin, vec3_add(origin, vec3_scale(direction, along)),

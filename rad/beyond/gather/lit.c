@@ -12,17 +12,12 @@
 
 static const double LAMP = 1.1, BRIGHT = 4.0;
 
-static int32_t space_of(const struct model *model, int32_t root)
-{
-    return model->spaces ? model->spaces->of[root] : 0;
-}
-
 static void find_means(struct lit *lit, const struct model *model)
 {
     const struct rgb *radiosity = model->forest->radiosity;
     int32_t count = lit_count(model);
     for (int32_t root = 0; root < scene_root_count(model->scene); root++) {
-        struct lit *own = &lit[space_of(model, root)];
+        struct lit *own = &lit[node_space(model, root)];
         double area = scene_root_own_area(model->scene, root);
         own->mean += area * rgb_sum(radiosity[root]);
         rgb_add(&own->scale, area, radiosity[root]);
@@ -46,7 +41,7 @@ void lit_renew(struct lit *lit, const struct model *model)
     for (int32_t s = 0; s < lit_count(model); s++)
         lit[s].reflected = 0.0;
     for (int32_t root = 0; root < forest->root_count; root++)
-        lit[space_of(model, root)].reflected +=
+        lit[node_space(model, root)].reflected +=
             scene_root_area(forest->scene, root) *
             (rgb_sum(forest->radiosity[root]) -
              rgb_sum(forest_material(forest, root)->emission));
@@ -65,7 +60,7 @@ struct emitters {
 static void find_emitters(struct emitters *all, const struct model *model)
 {
     for (int32_t root = 0; root < scene_root_count(model->scene); root++) {
-        struct emitters *own = &all[space_of(model, root)];
+        struct emitters *own = &all[node_space(model, root)];
         double area = scene_root_area(model->scene, root);
         if (!material_emits(scene_root_material(model->scene, root)))
             continue;

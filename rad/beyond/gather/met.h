@@ -33,8 +33,7 @@ static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 
     if (root < 0 || !(scene_root_area(scene, root) > 0.0))
         return MET_BACK;
     struct plane plane = scene_root_plane(scene, root);
-    double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
-    double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
+    double along = plane_ahead(&plane, origin, direction);
     point->at = vec3_add(origin, vec3_scale(direction, along));
     point->root = root;
     point->normal = plane.normal;

@@ -22,10 +22,8 @@ struct pane_walk receiver_walk(struct receiver *r, struct vec3 origin,
     if (met == MET_FRONT)
         return receiver_walk_to(r, origin, point->at);
     if (met == MET_BACK && r->gather->aims->panes &&
-        octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts)) {
-        const struct plane *plane = &model->scene->planes[hit.triangle];
-        walk.left = -plane_distance(plane, origin) / vec3_dot(plane->normal, direction);
-    }
+        octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts))
+        walk.left = plane_ahead(&model->scene->planes[hit.triangle], origin, direction);
     return walk;
 }
 
