@@ -82,11 +82,15 @@ struct checking {
     int paths;        /* for each half */
     int32_t drawn[BATCH];          /* numbers of the leaves of a batch */
     struct finding found[BATCH];   /* estimates of these leaves by paths */
-    double value[BATCH];           /* of each draw, a term of E^2: see above */
-    double own[BATCH];             /* the same relative to the leaf's own light */
-    double claimed[BATCH];         /* the one claimed */
-    double noise[BATCH];           /* variance of the paths of each draw, alike */
     struct spotcheck result;
+};
+
+/* Sums over draws. */
+struct tally {
+    double sum, squares;     /* of terms of E^2, see above, and of their squares */
+    double own, own_squares; /* the same relative to the leaves' own light */
+    double claimed;          /* of the terms claimed, relative to this */
+    double noise;            /* of the variances of paths, as terms of E^2 */
 };
 
 static struct rgb reflected(const struct forest *forest, int32_t leaf)
@@ -228,8 +232,8 @@ static double claim_of(const struct checking *c, int32_t leaf, struct rgb b)
     return most > 0.0 ? claim * claim : 0.0;
 }
 
-/* Collective. */
-static void check_batch(struct checking *c, int batch)
+/* Collective. Adds the draws of a batch to the tally. */
+static void check_batch(struct checking *c, int batch, struct tally *tally)
 {
     const struct forest *forest = c->solver->model.forest;
     draw_leaves(c, batch);
@@ -245,23 +249,26 @@ static void check_batch(struct checking *c, int batch)
                 off[half].band[band] = b.band[band] - c->found[k].half[half].band[band];
             apart.band[band] = off[0].band[band] - off[1].band[band];
         }
-        c->value[k] = scale * rgb_dot(off[0], off[1]);
-        c->noise[k] = scale * 0.5 * rgb_dot(apart, apart);
+        double product = rgb_dot(off[0], off[1]), value = scale * product;
         double light = rgb_dot(b, b), claim = claim_of(c, leaf, b);
         double share = light > 0.0 ? 1.0 / (fmax(1.0, claim) * likely) : 0.0;
-        c->own[k] = light > 0.0 ? share * rgb_dot(off[0], off[1]) / light : 0.0;
-        c->claimed[k] = share * claim;
+        double own = light > 0.0 ? share * product / light : 0.0;
+        tally->sum += value;
+        tally->squares += value * value;
+        tally->own += own;
+        tally->own_squares += own * own;
+        tally->claimed += share * claim;
+        tally->noise += scale * 0.5 * rgb_dot(apart, apart);
     }
 }
 
 /* Collective. Chooses the best number of paths for an error of this square. */
 static void choose_paths(struct checking *c, double square)
 {
-    double noise = 0.0;
+    struct tally tally = {.sum = 0.0};
     c->paths = PATHS_LEAST;
-    check_batch(c, BATCHES_MOST);
-    for (int k = 0; k < BATCH; k++)
-        noise += c->noise[k] / BATCH;
+    check_batch(c, BATCHES_MOST, &tally);
+    double noise = tally.noise / BATCH;
     int64_t rays = 2 * BATCHES_LEAST * c->result.rays; /* fewest batches, doubled */
     for (; c->paths < PATHS_MOST && noise > NOISE * square && rays <= c->rays_most;
          c->paths *= 2, noise *= 0.5, rays *= 2) {
@@ -272,25 +279,19 @@ static void choose_paths(struct checking *c, double square)
 static void check_leaves(struct checking *c, double goal)
 {
     struct spotcheck *result = &c->result;
-    double sum = 0.0, squares = 0.0, own = 0.0, own_squares = 0.0, claimed = 0.0;
+    struct tally tally = {.sum = 0.0};
     bool goes_on = true;
     for (int batch = 0; goes_on && result->done; batch++) {
-        check_batch(c, batch);
-        for (int k = 0; k < BATCH; k++) {
-            sum += c->value[k];
-            squares += c->value[k] * c->value[k];
-            own += c->own[k];
-            own_squares += c->own[k] * c->own[k];
-            claimed += c->claimed[k];
-        }
+        check_batch(c, batch, &tally);
         result->leaves += BATCH;
         result->paths += 2 * BATCH * c->paths;
-        double count = (double)result->leaves, mean = sum / count;
+        double count = (double)result->leaves, mean = tally.sum / count;
         result->square = mean;
-        result->doubt = sqrt(fmax(0.0, squares / count - mean * mean) / count);
+        result->doubt = sqrt(fmax(0.0, tally.squares / count - mean * mean) / count);
         double enough = DOUBT * fmax(mean, 0.25 * goal * goal);
-        double doubt = sqrt(fmax(0.0, own_squares - own * own / count));
-        result->own = claimed > 0.0 ? (fmax(0.0, own) + doubt) / claimed : 1.0;
+        double doubt = sqrt(fmax(0.0, tally.own_squares - tally.own * tally.own / count));
+        result->own = tally.claimed > 0.0
+                          ? (fmax(0.0, tally.own) + doubt) / tally.claimed : 1.0;
         bool most = batch + 1 == BATCHES_MOST || result->rays > c->rays_most;
         goes_on = batch + 1 < BATCHES_LEAST || (result->doubt > enough && !most);
     }

@@ -246,15 +246,16 @@ static bool is_near_sender(const struct sender_node *node, const struct bounds *
     return node->child[0] < 0 && vec3_dot(apart, apart) <= reach * reach;
 }
 
-/* The offer of a node of a single sender, by its exact factor. */
-static struct offer exact_offer(const struct receiver *r, const struct senders *senders,
-                                const struct sender_node *node)
+/* Makes the offer of a node of a single sender one by its exact factor. */
+static void make_exact(const struct receiver *r, const struct senders *senders,
+                       const struct sender_node *node, struct offer *offer)
 {
     int32_t patch = senders->patches[node->first];
     struct facet sender = facet_make(r->gather->model->forest, patch);
     bool faces = facets_face(&r->facet, &sender);
-    double factor = faces ? exact_factor(r, senders, &sender) : 0.0;
-    return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
+    offer->factor = faces ? exact_factor(r, senders, &sender) : 0.0;
+    offer->worth =
+        offer->factor * rgb_sum(sender_light(senders, patch)) * offer->blind;
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
@@ -273,28 +274,24 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         const struct sender_node *node =
             &senders->nodes[cuts->nodes[cut.first + i].node];
         double blind = cuts_blind_part(senders, node, space);
-        aims->offers[i] =
-            (struct offer){sender_node_worth(senders, node, &own) * blind, -1.0};
-        all += aims->offers[i].worth;
+        double worth = sender_node_worth(senders, node, &own) * blind;
+        aims->offers[i] = (struct offer){worth, -1.0, blind};
+        all += worth;
     }
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *at = &cuts->nodes[cut.first + i];
-        const struct sender_node *node = &senders->nodes[at->node];
-        double blind = cuts_blind_part(senders, node, space);
-        if (aims->offers[i].worth * segments >= all && is_near_sender(node, &own)) {
-            aims->offers[i] = exact_offer(r, senders, node);
-            aims->offers[i].worth *= blind;
-        }
-        sum += aims->offers[i].worth;
-        found += aims->offers[i].worth / blind * at->found;
+        struct offer *offer = &aims->offers[i];
+        if (offer->worth * segments >= all &&
+            is_near_sender(&senders->nodes[at->node], &own))
+            make_exact(r, senders, &senders->nodes[at->node], offer);
+        sum += offer->worth;
+        found += offer->worth / offer->blind * at->found;
     }
     double part = found > 0.0 ? 0.5 * sum / found : 0.0;
-    for (int64_t i = 0; i < cut.count; i++) {
-        const struct cut_node *at = &cuts->nodes[cut.first + i];
-        double blind = cuts_blind_part(senders, &senders->nodes[at->node], space);
+    for (int64_t i = 0; i < cut.count; i++)
         aims->offers[i].worth *=
-            (found > 0.0 ? 0.5 : 1.0) + part * at->found / blind;
-    }
+            (found > 0.0 ? 0.5 : 1.0) +
+            part * cuts->nodes[cut.first + i].found / aims->offers[i].blind;
     return sum / segments;
 }
 

@@ -84,6 +84,7 @@ struct shot {
 struct offer {
     double worth;  /* by which segments are dealt, over all bands, W/m^2 */
     double factor; /* the exact form factor of a single near sender, 1; else -1 */
+    double blind;  /* see cuts_blind_part() */
 };
 
 /* Senders as targets of segments. */
