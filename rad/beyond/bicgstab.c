@@ -19,29 +19,12 @@ struct vectors {
     struct rgb *r, *r0, *p, *v, *t;
     const struct totals *totals;
     const double *weights;
-    double *terms;     /* [2 * BANDS * count] buffer, of sums */
+    double *terms;     /* [BANDS * count] buffer, of sums */
     int64_t count;
     double rho[BANDS]; /* (r0, r) */
 };
 
-/* Collective. (x, y) and (y, y). */
-static void products(const struct vectors *z, const struct rgb *x, const struct rgb *y,
-                     struct rgb both[2])
-{
-    double sums[2 * BANDS], *term = z->terms;
-    for (int64_t i = 0; i < z->count; i++)
-        for (int c = 0; c < BANDS; c++) {
-            double weighted = z->weights[i] * y[i].band[c];
-            *term++ = weighted * x[i].band[c];
-            *term++ = weighted * y[i].band[c];
-        }
-    total_up(z->totals, z->terms, z->count, 2 * BANDS, sums);
-    for (int c = 0; c < BANDS; c++) {
-        both[0].band[c] = sums[2 * c];
-        both[1].band[c] = sums[2 * c + 1];
-    }
-}
-
+/* Collective. (x, y). */
 static struct rgb product(const struct vectors *z, const struct rgb *x,
                           const struct rgb *y)
 {
@@ -95,7 +78,7 @@ static void begin(struct vectors *z)
 /* False if nothing has moved. */
 static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *x)
 {
-    struct rgb a, minus, o, turn, both[2];
+    struct rgb a, minus, o, turn;
     map(context, z->p, z->v);
     struct rgb under = product(z, z->r0, z->v);
     for (int c = 0; c < BANDS; c++) {
@@ -104,9 +87,9 @@ static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *
     }
     add(z->r, z->v, minus, z->count); /* s */
     map(context, z->r, z->t);
-    products(z, z->r, z->t, both);
+    struct rgb both = product(z, z->t, z->r), own = product(z, z->t, z->t);
     for (int c = 0; c < BANDS; c++) {
-        o.band[c] = quotient(both[0].band[c], both[1].band[c]);
+        o.band[c] = quotient(both.band[c], own.band[c]);
         minus.band[c] = -o.band[c];
     }
     add(x, z->p, a, z->count);
@@ -137,7 +120,7 @@ struct bicgstab bicgstab_solve(linear_map *map, void *context,
                         .count = count};
     struct bicgstab done = {0, 0.0};
     bool fresh = true, moved = true;
-    z.terms = alloc_array(2 * BANDS * (size_t)count, sizeof *z.terms);
+    z.terms = alloc_array(BANDS * (size_t)count, sizeof *z.terms);
     for (;; done.steps++) {
         done.residual = residual_of(&z, x);
         if (done.steps == 0)
