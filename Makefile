@@ -6,8 +6,8 @@
 #   make room            build/room, a scene generator
 #   make pathtracer      build/pathtracer, which phr's pictures and meshes are compared
 #                        with
-#   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of
-#                        first hits, beside Embree where it is installed
+#   make bench           $(BUILD)/hits, a bench of rays and of segments, beside Embree
+#                        where it is installed
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path
 #                        tracer
 #   make chart           docs/chart.csv, docs/accuracy.md and, with gnuplot,
@@ -208,10 +208,10 @@ build/room: scenes/room.c Makefile
 # Set EMBREE= to leave Embree out where its header is found.
 EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
 
-bench: $(BUILD)/rays $(BUILD)/hits build/room
+bench: $(BUILD)/hits build/room
 
-$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/bench.h \
-    rad/beyond/paths.c $(BUILD)/libphr.a Makefile
+$(BUILD)/hits: tests/bench/hits.c tests/bench/bench.h rad/beyond/paths.c \
+    $(BUILD)/libphr.a Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
 	    $(CFLAGS) -o $@ \
 	    $< $(BUILD)/libphr.a $(if $(EMBREE),-lembree3) -lm

@@ -14,7 +14,7 @@
  * decides nothing otherwise than double would, and the answers are the watertight ones of
  * geom/triangle.c to the bit.
  *
- * Made faster, most of all first (tests/bench/rays.c, beside Embree's packets of 16): a
+ * Made faster, most of all first (tests/bench/hits.c, beside Embree's packets of 16): a
  * link starts with the last blocker of its parent; tests inlined, masks folded in whole
  * words; the six slabs of a node written out instead of looped over; one fold of masks
  * for a triangle; numbers of the shaft spread over the lanes once, not for each node.

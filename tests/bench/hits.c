@@ -1,11 +1,15 @@
-/* Rays per second of octree/, one by one, and beside it, where it is compiled in
- * (-DWITH_EMBREE), of Embree 3 on the same rays, one thread.
+/* Rays per second of octree/ and beside it, where it is compiled in (-DWITH_EMBREE), of
+ * Embree 3 on the same rays, one thread.
  *
  *   make bench && build/room 6350 1 > build/room.obj && build/mpi/hits build/room.obj
  *
  * First hits of rays of random directions that leave points of the surfaces, chosen by
  * area: each ray a point of its own, as paths do that wander, or 256 rays a point, in a
- * stream, as a gather does; segments between points of surfaces that face each other.
+ * stream, as a gather does; segments between points of surfaces that face each other, and
+ * in bundles between two patches, as links have them, in the order of refinement: a pair,
+ * its four when one patch is split, and the four of each of those. The first of four
+ * bundles starts with the last blocker of the pair that it comes from, each other one
+ * with that of the one before, as in link_split().
  * Programs take turns, nine times, and the fastest turn counts, in seconds of the
  * processor. Rays are made for either beforehand. Embree's begin 1e-5 further on, its
  * segments are cut short by 1e-4 at both ends, where they would meet the triangles that
@@ -21,6 +25,7 @@
  * same rays, three turns. */
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
+#include "rad/formfactor.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 #include "tests/bench/bench.h"
@@ -28,13 +33,14 @@
 #include "tests/shaded.h"
 
 enum { TURNS = 9, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3, PATHS = 64 };
+enum { FAMILY = 1 + 4 + 16, LEVELS = 4 }; /* bundles; of patches below their roots */
 
 struct rays {
     struct vec3 *origins, *ends; /* [count] `ends` are directions, or a segment's ends */
     int32_t (*own)[2];           /* [count] triangles that a segment joins */
     int32_t *answers;            /* [count] triangle that is hit, or -1; is it blocked? */
     int count;
-    bool are_segments, are_streams;
+    bool are_segments, are_streams, are_bundles;
     double *sums; /* [triangles] area of the triangles up to this one */
 };
 
@@ -85,6 +91,84 @@ static void fill_segments(const struct bench *bench, struct rays *rays,
     }
 }
 
+/* --- bundles --- */
+
+static struct facet random_facet(const struct scene *scene, struct random *random)
+{
+    int32_t root = random_below(random, scene->input_count);
+    struct facet facet = {scene->triangles[root], scene->planes[root], scene->areas[root],
+                          root};
+    for (int level = random_below(random, LEVELS); level > 0; level--)
+        facet.triangle = triangle_child(&facet.triangle, random_below(random, 4));
+    return facet;
+}
+
+/* All of the triangle lies before the plane. */
+static bool is_before(const struct triangle *t, const struct facet *facet)
+{
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; k++)
+        least = fmin(least, plane_distance(&facet->plane, t->corner[k]));
+    return facet->area > 0.0 && least > 1e-3;
+}
+
+static void random_pair(const struct scene *scene, struct random *random,
+                        struct facet *p, struct facet *q)
+{
+    do {
+        *p = random_facet(scene, random);
+        *q = random_facet(scene, random);
+    } while (!is_before(&p->triangle, q) || !is_before(&q->triangle, p));
+}
+
+static void fill_bundles(const struct bench *bench, struct rays *rays,
+                         struct random *random, int unused)
+{
+    (void)unused;
+    struct facet p = {.input = -1}, q = p;
+    rays->are_segments = rays->are_bundles = true;
+    rays->count -= rays->count % BUNDLE_RAYS;
+    for (int i = 0; i < rays->count; i++) {
+        int member = i / BUNDLE_RAYS % FAMILY, ray = i % BUNDLE_RAYS;
+        if (member == 0 && ray == 0)
+            random_pair(bench->scene, random, &p, &q);
+        struct facet a = p, b = q;
+        if (member > 0)
+            a.triangle = triangle_child(&p.triangle,
+                                        member < 5 ? member - 1 : (member - 5) / 4);
+        if (member >= 5)
+            b.triangle = triangle_child(&q.triangle, (member - 5) % 4);
+        struct bundle bundle = facet_pair_make(&a, &b).bundle;
+        rays->origins[i] = bundle.from[ray / BUNDLE_ENDS];
+        rays->ends[i] = bundle.to[ray % BUNDLE_ENDS];
+        rays->own[i][0] = p.input;
+        rays->own[i][1] = q.input;
+    }
+}
+
+static void run_bundles(const struct octree *octree, struct rays *rays,
+                        struct octree_counts *counts)
+{
+    int32_t guess[FAMILY];
+    struct bundle bundle = {.asked = (1u << BUNDLE_RAYS) - 1};
+    for (int i = 0; i < rays->count; i += BUNDLE_RAYS) {
+        int member = i / BUNDLE_RAYS % FAMILY;
+        int from = member % 4 == 1 ? (member < 5 ? 0 : 1 + (member - 5) / 4) : member - 1;
+        guess[member] = member > 0 ? guess[from] : -1;
+        for (int k = 0; k < BUNDLE_ENDS; k++) {
+            bundle.from[k] = rays->origins[i + BUNDLE_ENDS * k];
+            bundle.to[k] = rays->ends[i + k];
+        }
+        bundle.own[0] = rays->own[i][0];
+        bundle.own[1] = rays->own[i][1];
+        unsigned blocked = octree_block(octree, &bundle, &guess[member], counts);
+        for (int k = 0; k < BUNDLE_RAYS; k++)
+            rays->answers[i + k] = blocked >> k & 1u;
+    }
+}
+
+/* --- the others --- */
+
 static void run_streams(const struct octree *octree, struct rays *rays,
                         struct octree_counts *counts)
 {
@@ -110,7 +194,9 @@ static double run_octree(const struct octree *octree, struct rays *rays,
     *counts = (struct octree_counts){0};
     if (rays->are_streams)
         run_streams(octree, rays, counts);
-    for (int i = 0; i < rays->count && !rays->are_streams; i++) {
+    if (rays->are_bundles)
+        run_bundles(octree, rays, counts);
+    for (int i = 0; i < rays->count && !rays->are_streams && !rays->are_bundles; i++) {
         int32_t guess = -1;
         if (rays->are_segments)
             rays->answers[i] =
@@ -145,27 +231,57 @@ static void set_embree(const struct rays *rays, struct RTCRayHit *out)
     }
 }
 
-/* Returns the seconds that it takes; counts the answers that differ. */
+static void set_packets(const struct rays *rays, struct RTCRay16 *out)
+{
+    for (int i = 0; i < rays->count; i++) {
+        struct RTCRay ray = embree_ray(rays->origins[i], rays->ends[i], true);
+        struct RTCRay16 *packet = &out[i / BUNDLE_RAYS];
+        int k = i % BUNDLE_RAYS;
+        packet->org_x[k] = ray.org_x, packet->dir_x[k] = ray.dir_x;
+        packet->org_y[k] = ray.org_y, packet->dir_y[k] = ray.dir_y;
+        packet->org_z[k] = ray.org_z, packet->dir_z[k] = ray.dir_z;
+        packet->tnear[k] = ray.tnear, packet->tfar[k] = ray.tfar;
+        packet->mask[k] = ray.mask, packet->time[k] = 0.0f;
+        packet->id[k] = packet->flags[k] = 0;
+    }
+}
+
+/* Returns the seconds that it takes; counts the answers that differ. Bundles go through
+ * Embree's best mode for them, 16-wide and coherent; it remembers no blocker. */
 static double run_embree(const struct bench *bench, const struct rays *rays,
                          struct RTCRayHit *embree, int64_t *differ)
 {
     struct RTCIntersectContext context;
+    void *memory, *memory_of_all;
+    int *all = alloc_aligned(1, BUNDLE_RAYS * sizeof *all, &memory_of_all);
+    struct RTCRay16 *packets = alloc_aligned(rays->count / BUNDLE_RAYS + 1,
+                                             sizeof *packets, &memory);
     set_embree(rays, embree);
+    if (rays->are_bundles)
+        set_packets(rays, packets);
+    memset(all, 0xff, BUNDLE_RAYS * sizeof *all);
     double start = cpu_seconds();
     rtcInitIntersectContext(&context);
+    if (rays->are_bundles)
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (int i = 0; i < rays->count; i++)
-        if (rays->are_segments)
-            rtcOccluded1(bench->inside, &context, &embree[i].ray);
-        else
+        if (!rays->are_segments)
             rtcIntersect1(bench->whole, &context, &embree[i]);
+        else if (!rays->are_bundles)
+            rtcOccluded1(bench->inside, &context, &embree[i].ray);
+        else if (i % BUNDLE_RAYS == 0)
+            rtcOccluded16(all, bench->inside, &context, &packets[i / BUNDLE_RAYS]);
     double seconds = cpu_seconds() - start;
     *differ = 0;
     for (int i = 0; i < rays->count; i++) {
         bool found = embree[i].hit.geomID != RTC_INVALID_GEOMETRY_ID;
         int32_t hit = found ? (int32_t)embree[i].hit.primID : -1;
-        *differ += rays->answers[i] !=
-                   (rays->are_segments ? embree[i].ray.tfar < 0.0f : hit);
+        float end = rays->are_bundles ? packets[i / BUNDLE_RAYS].tfar[i % BUNDLE_RAYS]
+                                      : embree[i].ray.tfar;
+        *differ += rays->answers[i] != (rays->are_segments ? end < 0.0f : hit);
     }
+    alloc_free(memory);
+    alloc_free(memory_of_all);
     return seconds;
 }
 
@@ -288,7 +404,8 @@ static void bench_all(const struct bench *bench, int count, uint64_t seed)
         int together;
     } kinds[] = {{"rays from surfaces, 1 from each point", fill_leaving, 1},
                  {"rays from surfaces, 256 from each point", fill_leaving, STREAM_RAYS},
-                 {"segments between points of surfaces", fill_segments, 0}};
+                 {"segments between points of surfaces", fill_segments, 0},
+                 {"segments in bundles, in the order of refinement", fill_bundles, 0}};
     const struct scene *scene = bench->scene;
     double *sums = alloc_array((size_t)scene->input_count, sizeof *sums), sum = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++)
