@@ -1,12 +1,15 @@
-/* Tests of viewfactors/screened.h: exact answers where whole shadows fall on the target,
- * or where two sets of screens tile a wall, so that each segment is stopped by one of
- * them; sums over many segments; screens that nothing passes, that hide nothing, that
- * reach behind the two triangles, and too many of them. The error that is told holds. */
+/* Tests of viewfactors/outlook.h and screened.h: what a point sees through a hole; exact
+ * answers where whole shadows fall on the target, or where two sets of screens tile a
+ * wall, so that each segment is stopped by one of them; sums over many segments; screens
+ * that nothing passes, that hide nothing, that reach behind the two triangles, and too
+ * many of them. The error that is told holds. */
 #include "tools/viewfactors/screened.h"
 
 #include "geom/contour.h"
+#include "geom/lambert.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
+#include "tools/viewfactors/outlook.h"
 
 enum { PAIRS = 40, PARTS = 256 };
 
@@ -221,8 +224,52 @@ static void test_ends(void)
            "%d scattered screens make too many parts, which is told", SCREENS_MAX);
 }
 
+/* --- what a point sees --- */
+
+static const struct vec3 UP = {0.0, 0.0, 1.0};
+
+static double factor_left(const struct outlook *outlook)
+{
+    double sum = 0.0;
+    for (int i = 0; i < outlook->count; i++)
+        sum += point_polygon_factor(outlook->from, UP, outlook->piece[i].corner,
+                                    outlook->piece[i].count);
+    return sum;
+}
+
+/* A screen of eight triangles with a hole of 2 cm by 10 cm, halfway to a lamp of 9 m: the
+ * factor of the visible part is that of the hole. */
+static void test_hole(void)
+{
+    static const double EDGE[4] = {-4.0, -0.01, 0.01, 4.0},
+                        SIDE[4] = {-4.0, -0.05, 0.05, 4.0};
+    const struct triangle lamp = {{{-3, -3, 1}, {0, 6, 1}, {3, -3, 1}}};
+    const struct vec3 hole[4] = {{-0.01, -0.05, 0.5}, {-0.01, 0.05, 0.5},
+                                 {0.01, 0.05, 0.5}, {0.01, -0.05, 0.5}};
+    double worst = 0.0;
+    for (int place = 0; place < 10; place++) {
+        struct vec3 x = point(0.05 * place, 0.03 * place, 0.0);
+        struct outlook outlook;
+        outlook_start(&outlook, x, &lamp);
+        for (int i = 0; i < 9; i++) {
+            double x0 = EDGE[i % 3], x1 = EDGE[i % 3 + 1], y0 = SIDE[i / 3],
+                   y1 = SIDE[i / 3 + 1];
+            const struct triangle half[2] = { /* a front and a back */
+                {{point(x0, y0, 0.5), point(x1, y0, 0.5), point(x1, y1, 0.5)}},
+                {{point(x0, y0, 0.5), point(x0, y1, 0.5), point(x1, y1, 0.5)}}};
+            for (int k = 0; k < 2 && i != 4; k++)
+                outlook_hide(&outlook, &half[k]);
+        }
+        double exact = point_polygon_factor(x, UP, hole, 4);
+        worst = fmax(worst, fabs(factor_left(&outlook) / exact - 1.0));
+    }
+    tap_ok(worst <= 1e-9, "a hole in a screen is all that is left over, within %.1e",
+           worst);
+}
+
 int main(void)
 {
+    test_hole();
     for (size_t k = 0; k < sizeof TOLERANCES / sizeof TOLERANCES[0]; k++) {
         test_whole_shadows(TOLERANCES[k]);
         test_halves(TOLERANCES[k]);
