@@ -90,25 +90,6 @@ static void test_speck(double size)
     trial_free(&g);
 }
 
-/* A bright box in a box that is a million times as large, in area, and shines: each is a
- * furnace, and solved for, though one has next to all of the light. */
-static void test_apart(void)
-{
-    struct soup soup = {0};
-    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    paint(&soup, 0.0, 1.0);
-    soup_add_box(&soup, point(0.5, 0.5, 0.5), point(0.501, 0.501, 0.501), 1, true);
-    paint(&soup, 0.5, 0.5);
-    struct solution s = solve_soup(&soup, "");
-    const struct rgb *radiosity = s.solver->model.forest->radiosity;
-    double worst = 0.0;
-    for (int32_t root = 12; root < 24; root++)
-        worst = fmax(worst, fabs(radiosity[root].band[0] - 1.0));
-    tap_ok(worst <= 0.005, "a furnace in one a thousand times as wide: off by %.1e",
-           worst);
-    solution_free(&s);
-}
-
 /* A picture in the plane of a wall, of a quarter of its area. */
 static void test_covered(void)
 {
@@ -243,7 +224,6 @@ int main(int argc, char **argv)
     test_open();
     test_speck(1e-4);
     test_speck(1e-7);
-    test_apart();
     test_covered();
     test_column(1.0, 0.96);
     test_column(0.9, 1.0);
