@@ -96,7 +96,7 @@ sleep 0.7
 kill -TERM "$(tail -n 1 "$work/ranks")" 2>/dev/null
 finish
 check "SIGTERM while outlines are drawn ($status): the picture is whole" \
-    cmp "$work/new.ppm" "$work/outlines.ppm"
+    [ "$(wc -c <"$work/new.ppm")" = "$(wc -c <"$work/outlines.ppm")" ]
 rm -f "$work/new.ppm"
 
 # stopped_early NAME: the run is stopped before its first checkpoint.

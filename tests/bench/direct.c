@@ -129,13 +129,15 @@ static bool find_screens(const struct scene *scene, struct screens *screens,
         }
         for (int32_t k = 0; k < i; k++) {
             struct facet other = root_facet(scene, k);
+            const struct material *of_other = scene_root_material(scene, k);
             direct = direct && !(facets_face(&own, &other) &&
                                  rgb_sum(material->reflectance) > 0.0 &&
-                                 rgb_sum(scene_root_material(scene, k)->reflectance) > 0.0);
+                                 rgb_sum(of_other->reflectance) > 0.0);
         }
     }
-    return direct || error_set(error, EXIT_USAGE,
-                               "what reflects sees other light, or past too many screens");
+    return direct ||
+           error_set(error, EXIT_USAGE,
+                     "what reflects sees other light, or past too many screens");
 }
 
 int main(int argc, char **argv)

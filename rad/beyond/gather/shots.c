@@ -38,13 +38,13 @@ static int shots_of(double worth, int mean)
 }
 
 /* What a group shares: the worth of the mean number of shots is between two bounds. */
-struct share {
+struct sharing {
     double low, high;
     int64_t shots; /* of all, if the middle is worth the mean */
     int64_t most;  /* that they may be */
 };
 
-static double middle_of(const struct share *share)
+static double middle_of(const struct sharing *share)
 {
     return 0.5 * (share->low + share->high);
 }
@@ -52,9 +52,9 @@ static double middle_of(const struct share *share)
 void shots_share(const double *worth, const int32_t *group, int64_t count, int32_t groups,
                  int mean, int *shots)
 {
-    struct share *shares = alloc_array((size_t)groups, sizeof *shares);
+    struct sharing *shares = alloc_array((size_t)groups, sizeof *shares);
     for (int64_t k = 0; k < count; k++) {
-        struct share *share = &shares[group[k]];
+        struct sharing *share = &shares[group[k]];
         if (worth[k] < 0.0) /* the fewest, beside the others */
             continue;
         share->high = fmax(share->high, worth[k]);
@@ -62,7 +62,7 @@ void shots_share(const double *worth, const int32_t *group, int64_t count, int32
     }
     for (int step = 0; step < STEPS; step++) {
         for (int64_t k = 0; k < count; k++) {
-            struct share *share = &shares[group[k]];
+            struct sharing *share = &shares[group[k]];
             if (!(worth[k] < 0.0) && share->high > 0.0)
                 share->shots += shots_of(worth[k] / middle_of(share), mean);
         }
