@@ -5,6 +5,7 @@
 #include "geom/lambert.h"
 #include "rad/beyond/gather/look.h"
 #include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "tests/defaults.h"
 
 struct trial {

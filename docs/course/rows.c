@@ -12,6 +12,7 @@
 #include "geom/lambert.h"
 #include "rad/beyond/gather/look.h"
 #include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 

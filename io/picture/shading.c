@@ -22,7 +22,7 @@
  * lost, .6 % of the picture of a furnished room (make cycles).
  *
  * Where a box stands on the floor, or a picture hangs close to a wall, leaves are covered
- * in part: their rows tell the open share (rad/beyond/gather/row.h). The covered part is
+ * in part: their rows tell the open share (rad/beyond/gather/rows.h). The covered part is
  * dark and invisible, and must not darken the rest. The light of the leaf belongs to its
  * open part, if that is a quarter at least: the shown irradiance is the leaf's over the
  * open share. A vertex with only covered leaves around it takes their mean.

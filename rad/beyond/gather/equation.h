@@ -10,7 +10,7 @@
 #define RAD_BEYOND_GATHER_EQUATION_H
 
 #include "rad/beyond/gather/mesh.h"
-#include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "rad/beyond/total.h"
 
 /* A leaf too near for some. */

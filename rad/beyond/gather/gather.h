@@ -98,7 +98,7 @@ struct gather_aims {
     int64_t offer_capacity, shot_capacity;
 };
 
-/* The scene of a final gather, and the rows of this rank: rad/beyond/gather/row.h. */
+/* The scene of a final gather, and the rows of this rank: rad/beyond/gather/rows.h. */
 struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
     int rays_asked;      /* from a leaf, in the mean, if there are few leaves */

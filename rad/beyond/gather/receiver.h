@@ -2,7 +2,7 @@
 #ifndef RAD_BEYOND_GATHER_RECEIVER_H
 #define RAD_BEYOND_GATHER_RECEIVER_H
 
-#include "rad/beyond/gather/row.h"
+#include "rad/beyond/gather/rows.h"
 #include "rad/beyond/sequence.h"
 
 /* Most tries for a point of a sender above the horizon. */

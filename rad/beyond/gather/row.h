@@ -1,43 +1,8 @@
-/* Rows of the final gather: their parts, making them, applying them; the light at points.
- *
- * The irradiance of a leaf is H = source + sum of weight B over its terms, band by band:
- * the row of the leaf. */
+/* The row of a leaf, made; the light at points. */
 #ifndef RAD_BEYOND_GATHER_ROW_H
 #define RAD_BEYOND_GATHER_ROW_H
 
 #include "rad/beyond/gather/gather.h"
-
-/* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
- * differ from rank to rank, so a patch is named by its place in forest_order(), here as
- * in all arrays of the final gather. */
-struct gather_term {
-    int32_t place; /* of the patch */
-    int32_t near;  /* the leaf too near met first by the ray: its place, or, once these
-                      are numbered, its number; -1: none */
-    float weight[BANDS];
-};
-
-/* What covers a leaf: things standing on it, and faces in its plane. Shares, 1. */
-struct cover {
-    float outside; /* of the leaf outside of things */
-    float open;    /* of the leaf outside of things and of narrow gaps */
-    float bare;    /* of `outside` not covered by faces in its plane */
-    float kept;    /* of the leaf's light that arrives on fronts, as its rays do */
-};
-
-/* The form factors from a leaf to all patches in its view. */
-struct gather_row {
-    int32_t leaf;
-    int64_t end;       /* of its terms, which begin at the end of the row before */
-    struct rgb source; /* irradiance from lamps, W/m^2 */
-    struct rgb straight; /* irradiance straight from lamps, W/m^2 */
-    struct rgb chance; /* variance of H if rays and segments were chosen by chance,
-                          (W/m^2)^2, for the links' radiosities */
-    struct rgb of_segments; /* the part of `chance` by segments to lamps */
-    struct rgb halves; /* squared difference of the first and second half of the
-                          rays: a sample of the variance by the sequence */
-    struct cover cover;
-};
 
 /* The mean irradiance of points, W/m^2. */
 struct gather_light {
@@ -45,7 +10,8 @@ struct gather_light {
     struct rgb rest;  /* all other light; 0 unless asked for */
     struct rgb variance; /* of both, if segments and rays were chosen by chance,
                             (W/m^2)^2 */
-    struct rgb halves;   /* a sample of the variance by the sequence: see above */
+    struct rgb halves;   /* a sample of the variance by the sequence: see struct
+                            gather_row */
 };
 
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
@@ -58,13 +24,5 @@ void final_gather_add_row(struct final_gather *gather, int32_t leaf, int rays,
 struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
                                     int count, bool all);
-
-/* The number of terms of all rows. */
-int64_t final_gather_terms(const struct final_gather *gather);
-
-/* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source
- * if `lamps`. */
-struct rgb final_gather_irradiance(const struct final_gather *gather, int64_t row,
-                                   const struct rgb *radiosity, bool lamps);
 
 #endif
