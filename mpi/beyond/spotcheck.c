@@ -86,7 +86,7 @@ struct checking {
 };
 
 /* Sums over draws. */
-struct tally {
+struct draws {
     double sum, squares;     /* of terms of E^2, see above, and of their squares */
     double own, own_squares; /* the same relative to the leaves' own light */
     double claimed;          /* of the terms claimed, relative to this */
@@ -233,7 +233,7 @@ static double claim_of(const struct checking *c, int32_t leaf, struct rgb b)
 }
 
 /* Collective. Adds the draws of a batch to the tally. */
-static void check_batch(struct checking *c, int batch, struct tally *tally)
+static void check_batch(struct checking *c, int batch, struct draws *tally)
 {
     const struct forest *forest = c->solver->model.forest;
     draw_leaves(c, batch);
@@ -265,7 +265,7 @@ static void check_batch(struct checking *c, int batch, struct tally *tally)
 /* Collective. Chooses the best number of paths for an error of this square. */
 static void choose_paths(struct checking *c, double square)
 {
-    struct tally tally = {.sum = 0.0};
+    struct draws tally = {.sum = 0.0};
     c->paths = PATHS_LEAST;
     check_batch(c, BATCHES_MOST, &tally);
     double noise = tally.noise / BATCH;
@@ -279,7 +279,7 @@ static void choose_paths(struct checking *c, double square)
 static void check_leaves(struct checking *c, double goal)
 {
     struct spotcheck *result = &c->result;
-    struct tally tally = {.sum = 0.0};
+    struct draws tally = {.sum = 0.0};
     bool goes_on = true;
     for (int batch = 0; goes_on && result->done; batch++) {
         check_batch(c, batch, &tally);
