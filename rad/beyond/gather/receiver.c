@@ -56,7 +56,8 @@ static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t 
     return &sums->items[sums->count++];
 }
 
-void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
+/* Adds `weight` times the mean radiosity of a patch. */
+static void add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
     rgb_add(&r->light, 1.0, rgb_times(*weight, g->model->forest->radiosity[patch]));
@@ -71,11 +72,11 @@ void receiver_add_point(struct receiver *r, int32_t patch,
                         const struct gather_slope *slope, const double at[3],
                         const struct rgb *weight)
 {
-    receiver_add_patch(r, patch, weight);
+    add_patch(r, patch, weight);
     struct rgb steep = rgb_scale(*weight, slope->rise);
     for (int k = 0; k < 3 && slope->rise != 0.0; k++) {
         struct rgb part = rgb_scale(steep, at[k] - 1.0 / 3.0);
-        receiver_add_patch(r, slope->first + k, &part);
+        add_patch(r, slope->first + k, &part);
     }
 }
 

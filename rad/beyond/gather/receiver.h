@@ -52,9 +52,6 @@ struct receiver receiver_of_points(struct final_gather *gather,
                                    int rays, struct gather_row *row,
                                    struct ray_sums *sums);
 
-/* Adds `weight` times the mean radiosity of a patch. */
-void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);
-
 /* Adds `weight` times the radiosity of a patch with this slope at its point with the
  * barycentric coordinates `at`. */
 void receiver_add_point(struct receiver *r, int32_t patch,
