@@ -108,7 +108,8 @@ static void add_mean(const struct shading *shading, const struct tile *tile,
                      double share, struct rgb *mean)
 {
     struct tile inner, outer;
-    if (find_inner(shading->vertices, shading->values, tile, &inner)) {
+    if (shading->divided[tile->leaf] &&
+        find_inner(shading->vertices, shading->values, tile, &inner)) {
         share *= 0.25;
         for (int k = 0; k < 3; k++) {
             outer = outer_tile(tile, &inner, k);
