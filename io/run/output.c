@@ -314,14 +314,18 @@ void output_write_note(struct output *output, const char *before)
 
 void output_uint32(struct output *output, uint32_t value)
 {
+    unsigned char bytes[4];
     for (int k = 0; k < 4; k++)
-        putc((int)(value >> (8 * k) & 255u), output->file);
+        bytes[k] = (unsigned char)(value >> (8 * k) & 255u);
+    fwrite(bytes, 1, sizeof bytes, output->file);
 }
 
 void output_uint32_big(struct output *output, uint32_t value)
 {
-    for (int k = 3; k >= 0; k--)
-        putc((int)(value >> (8 * k) & 255u), output->file);
+    unsigned char bytes[4];
+    for (int k = 0; k < 4; k++)
+        bytes[3 - k] = (unsigned char)(value >> (8 * k) & 255u);
+    fwrite(bytes, 1, sizeof bytes, output->file);
 }
 
 void output_float(struct output *output, float value)
