@@ -32,7 +32,7 @@
 #include "geom/stop.h"
 #include "octree/tree.h"
 
-enum { BINS = 16 }; /* a cut is looked for at their edges */
+enum { BINS = 16 }; /* at most; a cut is looked for at their edges */
 
 static const float NODE_COST = 2.0f;           /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
@@ -117,7 +117,7 @@ static struct box triangle_box(const struct triangle *t)
 
 /* A way to cut a run in two: items below `bin` go to the first part. */
 struct cutting {
-    int axis, bin;
+    int axis, bin, bins;
     float low, scale; /* bins begin at `low`; bins per unit of length */
     float cost;
 };
@@ -126,7 +126,7 @@ static int bin_of(const struct cutting *cutting, const struct item *item)
 {
     int bin =
         (int)((box_middle(&item->box, cutting->axis) - cutting->low) * cutting->scale);
-    return bin < BINS ? bin : BINS - 1;
+    return bin < cutting->bins ? bin : cutting->bins - 1;
 }
 
 /* Items with their middles in one slice, and the box around them. */
@@ -152,19 +152,19 @@ static void improve_cutting(struct cutting *best, struct cutting trial,
 {
     struct bin bins[BINS], sum = {NO_BOX, 0};
     float left[BINS];
-    for (int k = 0; k < BINS; k++)
+    for (int k = 0; k < trial.bins; k++)
         bins[k] = sum;
     for (int32_t i = 0; i < count; i++) {
         struct bin *bin = &bins[bin_of(&trial, &items[i])];
         box_add(&bin->box, &items[i].box);
         bin->count++;
     }
-    for (int k = 0; k < BINS; k++) {
+    for (int k = 0; k < trial.bins; k++) {
         left[k] = bin_cost(&sum);
         bin_add(&sum, &bins[k]);
     }
     sum = (struct bin){NO_BOX, 0};
-    for (trial.bin = BINS - 1; trial.bin > 0; trial.bin--) {
+    for (trial.bin = trial.bins - 1; trial.bin > 0; trial.bin--) {
         bin_add(&sum, &bins[trial.bin]);
         trial.cost = left[trial.bin] + bin_cost(&sum);
         if (trial.cost < best->cost)
@@ -185,7 +185,9 @@ static struct cutting find_cutting(const struct item *items, int32_t count)
     }
     for (int k = 0; k < 3; k++) {
         float size = middles.high[k] - middles.low[k];
-        struct cutting trial = {.axis = k, .low = middles.low[k], .scale = BINS / size};
+        struct cutting trial = {.axis = k, .bins = count < BINS ? count : BINS,
+                                .low = middles.low[k]};
+        trial.scale = (float)trial.bins / size;
         if (size > 1e-12f)
             improve_cutting(&best, trial, items, count);
     }
