@@ -105,7 +105,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
-TESTS = alloc elementary triangle lambert hull doubles scene polygon wall \
+TESTS = alloc elementary triangle lambert hull doubles scene polygon side wall \
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
         patch_exchange factors link patch_link method cluster node oracle error_oracle \
         pushpull equation \

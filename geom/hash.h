@@ -5,8 +5,10 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "geom/little.h"
+#include "geom/vec.h"
 
 #define HASH_START UINT64_C(14695981039346656037)
 
@@ -51,6 +53,20 @@ static inline uint64_t hash_mix(uint64_t bits)
 static inline double hash_unit(uint64_t seed)
 {
     return (double)(hash_mix(seed) >> 11) * 0x1p-53;
+}
+
+/* For tables of points; the sign of zeros does not count. */
+static inline uint64_t hash_point(uint64_t seed, struct vec3 x)
+{
+    const double values[3] = {x.x + 0.0, x.y + 0.0, x.z + 0.0}; /* -0 becomes 0 */
+    uint64_t hash = seed;
+    for (int k = 0; k < 3; k++) {
+        uint64_t bits;
+        memcpy(&bits, &values[k], sizeof bits);
+        hash = (hash ^ bits) * HASH_STEP;
+        hash ^= hash >> 29;
+    }
+    return hash;
 }
 
 #endif

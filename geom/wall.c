@@ -27,10 +27,10 @@
  * tests, but beside a window, and where the wall is not convex, outlines prove little. */
 #include "geom/wall.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/side.h"
 #include "geom/stop.h"
 
 /* True if triangle t lies in the plane of triangle s and faces the same way. */
@@ -43,56 +43,27 @@ static bool are_coplanar(const struct walls *walls, int32_t s, int32_t t)
 
 enum { COMPARED_MAX = 16 }; /* sides between the same two points, with one of these */
 
-struct wall_side {
-    const struct vec3 *low, *high; /* its ends in the order of their coordinates */
-    int32_t number;                /* 3 t + k */
-    bool is_upward;                /* from low to high */
-};
-
-static int compare_ends(const struct wall_side *s, const struct wall_side *t)
-{
-    int order = vec3_compare(*s->low, *t->low);
-    return order ? order : vec3_compare(*s->high, *t->high);
-}
-
-static int compare_sides(const void *a, const void *b)
-{
-    const struct wall_side *s = a, *t = b;
-    int order = compare_ends(s, t);
-    return order ? order : s->number < t->number ? -1 : 1;
-}
-
-static struct wall_side side_make(const struct triangle *t, int32_t number)
-{
-    const struct vec3 *a = &t->corner[number % 3], *b = &t->corner[(number + 1) % 3];
-    bool is_upward = vec3_compare(*a, *b) < 0;
-    return (struct wall_side){is_upward ? a : b, is_upward ? b : a, number, is_upward};
-}
-
 int32_t *walls_find_neighbours(const struct triangle *triangles,
                                const struct plane *planes, int32_t count)
 {
     const struct walls walls = {triangles, planes, NULL};
-    int32_t side_count = 3 * count;
-    struct wall_side *sides = alloc_array((size_t)side_count, sizeof *sides);
-    int32_t *neighbours = alloc_array((size_t)side_count, sizeof *neighbours);
-    for (int32_t n = 0; n < side_count; n++) {
-        sides[n] = side_make(&triangles[n / 3], n);
+    int32_t *same = sides_match(triangles, count);
+    int32_t *neighbours = alloc_array(3 * (size_t)count, sizeof *neighbours);
+    for (int32_t n = 0; n < 3 * count; n++)
         neighbours[n] = -1;
-    }
-    if (!stop_is_asked())
-        qsort(sides, (size_t)side_count, sizeof *sides, compare_sides);
-    for (int32_t i = 0; i < side_count && !stop_is_asked(); i++)
-        for (int32_t j = i + 1; j < side_count && j - i <= COMPARED_MAX &&
-                                compare_ends(&sides[i], &sides[j]) == 0; j++) {
-            int32_t a = sides[i].number, b = sides[j].number;
-            if (sides[i].is_upward != sides[j].is_upward && neighbours[a] < 0 &&
-                neighbours[b] < 0 && are_coplanar(&walls, a / 3, b / 3)) {
+    for (int32_t a = 0; a < 3 * count && !stop_is_asked(); a++) {
+        int compared = 0;
+        for (int32_t b = same[a]; b >= 0 && compared < COMPARED_MAX; b = same[b]) {
+            bool back = vec3_is_equal(side_start(triangles, a), side_end(triangles, b));
+            if (back && neighbours[a] < 0 && neighbours[b] < 0 &&
+                are_coplanar(&walls, a / 3, b / 3)) {
                 neighbours[a] = b / 3;
                 neighbours[b] = a / 3;
             }
+            compared++;
         }
-    alloc_free(sides);
+    }
+    alloc_free(same);
     return neighbours;
 }
 

@@ -12,31 +12,17 @@
  * be others than the floor's. */
 #include "io/picture/vertices.h"
 
-#include <string.h>
-
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "geom/stop.h"
 
 /* --- the hash table --- */
-
-static uint64_t hash_point(struct vec3 x, int32_t surface)
-{
-    const double values[3] = {x.x + 0.0, x.y + 0.0, x.z + 0.0}; /* no negative zeros */
-    uint64_t hash = (uint64_t)(uint32_t)surface;
-    for (int k = 0; k < 3; k++) {
-        uint64_t bits;
-        memcpy(&bits, &values[k], sizeof bits);
-        hash = (hash ^ bits) * UINT64_C(0x9E3779B97F4A7C15);
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
 
 /* Returns the slot of the vertex, or the free slot for a new one. */
 static int64_t find_slot(const struct vertices *vertices, struct vec3 x, int32_t surface)
 {
     int64_t mask = vertices->slot_count - 1;
-    int64_t slot = (int64_t)(hash_point(x, surface) & (uint64_t)mask);
+    int64_t slot = (int64_t)(hash_point((uint64_t)(uint32_t)surface, x) & (uint64_t)mask);
     for (;; slot = (slot + 1) & mask) {
         int32_t vertex = vertices->slots[slot];
         if (vertex < 0 || (vertices->surfaces[vertex] == surface &&
