@@ -376,7 +376,9 @@ void receiver_aim_at_bright(struct receiver *r)
 {
     int32_t space = node_space(r->gather->model, r->row->leaf);
     double part = r->gather->lit[space].bright_part;
-    aim_at_cut(r, r->gather->aims->cuts[BRIGHT_PATCHES], (int)ceil(r->rays * part));
+    struct cuts *cuts = r->gather->aims->cuts[BRIGHT_PATCHES];
+    cuts_limit(cuts);
+    aim_at_cut(r, cuts, (int)ceil(r->rays * part));
 }
 
 void receiver_aim(struct receiver *r)

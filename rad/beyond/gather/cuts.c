@@ -17,8 +17,8 @@
 
 #include "geom/alloc.h"
 
-/* Leaves of a region, at most. */
-enum { REGION_LEAVES = 16 };
+/* Leaves of a region, at most; nodes of cuts kept, about, where few come back. */
+enum { REGION_LEAVES = 16, NODES_KEPT = 16384 };
 
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
@@ -209,6 +209,15 @@ void cuts_learn(struct cuts *cuts)
     }
     for (int32_t region = 0; region < cuts->regions->count; region++)
         find_shares(cuts, region);
+}
+
+void cuts_limit(struct cuts *cuts)
+{
+    if (cuts->count <= NODES_KEPT)
+        return;
+    for (int64_t i = 0; i < cuts->regions->count; i++)
+        cuts->cuts[i].first = -1;
+    cuts->count = 0;
 }
 
 struct cut cuts_at(struct cuts *cuts, int32_t leaf)
