@@ -122,7 +122,7 @@ BENCHES = reference measure direct replay prices
 # Judges of the panel: leaves and pictures.
 JUDGES = judge shown
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl ply image view points sky links checkpoint clusters
+FUZZERS = obj mtl ply stl image view points sky cases links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 

@@ -48,15 +48,18 @@ static bool add_line(struct cases *cases, char *line, struct error *error)
     return true;
 }
 
-bool cases_read(struct cases *cases, const char *path, struct error *error)
+bool cases_of_text(struct cases *cases, struct error *error)
 {
-    *cases = (struct cases){.count = 0};
-    if (!text_read(&cases->text, path, error))
-        return false;
     for (char *line; (line = text_line(&cases->text)) != NULL;)
         if (*line != '#' && *text_trim(line) && !add_line(cases, line, error))
             return false;
     return true;
+}
+
+bool cases_read(struct cases *cases, const char *path, struct error *error)
+{
+    *cases = (struct cases){.count = 0};
+    return text_read(&cases->text, path, error) && cases_of_text(cases, error);
 }
 
 void cases_free(struct cases *cases)

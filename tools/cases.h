@@ -27,6 +27,10 @@ struct cases {
 /* Reads a list. Lines that begin with # and empty ones are comments. Errors: "PATH:LINE:
  * what is wrong", EXIT_USAGE. To be freed also after a failure. */
 bool cases_read(struct cases *cases, const char *path, struct error *error);
+
+/* Does the same with cases->text, which is read; all else is 0. */
+bool cases_of_text(struct cases *cases, struct error *error);
+
 void cases_free(struct cases *cases);
 
 /* Returns the case of this ID, or NULL. */
