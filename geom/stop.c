@@ -17,6 +17,7 @@ static bool heeded;
 void stop_when(bool (*asked)(void))
 {
     is_asked = asked;
+    heeded = false;
 }
 
 bool stop_is_asked(void)

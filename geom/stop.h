@@ -8,7 +8,7 @@
 #include "geom/error.h"
 
 /* `asked()` tells whether the program is asked to stop, and never takes a yes back. NULL:
- * not asked. */
+ * not asked. What was asked before is no longer heeded. */
 void stop_when(bool (*asked)(void));
 
 /* True if the asking loop is to break off. Its result can be packed and freed, and is of

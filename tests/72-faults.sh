@@ -86,17 +86,6 @@ check "there is a picture of what was done" [ -s "$work/new.ppm" ]
 check "it goes on from the checkpoint of the solution" \
     grep -q "^phr: stopped by SIGTERM: .*; go on with --resume $work/check\$" "$work/err"
 
-# Outlines are found by rays of their own, once the picture is there.
-outlines="scenes/cornell.obj --epsilon 1e-2 --final-gather 0 --show mesh --size 2000x2000
-    --samples 1"
-"$PHR" $outlines --quiet -o "$work/outlines.ppm"
-start 2 $outlines -o "$work/new.ppm"
-wait_for 1 "(0 split)"
-sleep 0.7
-kill -TERM "$(tail -n 1 "$work/ranks")" 2>/dev/null
-finish
-check "SIGTERM while outlines are drawn ($status): the picture is whole" \
-    [ "$(wc -c <"$work/new.ppm")" = "$(wc -c <"$work/outlines.ppm")" ]
 rm -f "$work/new.ppm"
 
 # stopped_early NAME: the run is stopped before its first checkpoint.

@@ -213,10 +213,12 @@ static bool show_views(struct run *run, const struct renderer *renderer,
             own.error = NULL;
         float *picture = make_picture(run, &own, camera);
         float *errors = picture && own.error ? part_errors(picture, camera) : NULL;
+        int32_t *leaves = show_leaves(run, camera);
         bool halts = !run->haste && run_hastens(run, DONE);
         if (picture && !halts)
             keep_done(halt, picture, errors, camera);
-        bool good = !halts && show_overlay(run, camera, picture);
+        bool good = !halts && show_overlay(run, camera, leaves, picture);
+        alloc_free(leaves);
         account_end(account, PHASE_RENDER);
         account_begin(account, PHASE_WRITE);
         if (good && run->comm.rank == 0)

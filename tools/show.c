@@ -170,10 +170,15 @@ struct shading *show_shading(struct run *run, struct rgb *colours)
 
 enum { DIGIT = 4096 }; /* numbers as two digits, each exact as a float */
 
-/* Collective. On rank 0 [width * height] local numbers of leaves, -1 where there is none;
- * NULL on the others. To be freed with alloc_free(). */
-static int32_t *leaves_of_pixels(struct run *run, const struct camera *camera)
+static bool has_overlay(enum show show)
 {
+    return show > SHOW_IRRADIANCE && show != SHOW_ERROR;
+}
+
+int32_t *show_leaves(struct run *run, const struct camera *camera)
+{
+    if (!has_overlay(run->options.show))
+        return NULL;
     const struct forest *forest = run->solver->model.forest;
     struct rgb *numbers = alloc_array((size_t)forest->count, sizeof *numbers);
     int32_t *order = forest_order(forest); /* local numbers differ from rank to rank */
@@ -428,17 +433,12 @@ static bool overlay_links(struct run *run, const struct camera *camera,
     return good;
 }
 
-bool show_overlay(struct run *run, const struct camera *camera, float *picture)
+bool show_overlay(struct run *run, const struct camera *camera, const int32_t *leaves,
+                  float *picture)
 {
-    enum show show = run->options.show;
-    if (show <= SHOW_IRRADIANCE || show == SHOW_ERROR)
-        return true;
-    int32_t *leaves = leaves_of_pixels(run, camera);
-    bool good = run_goes_on(run); /* a signal leaves holes in it */
-    if (good && show == SHOW_LINKS)
-        good = overlay_links(run, camera, leaves, picture);
-    else if (good && run->comm.rank == 0)
+    if (run->options.show == SHOW_LINKS)
+        return overlay_links(run, camera, leaves, picture);
+    if (leaves)
         draw_outlines(run, camera, leaves, picture);
-    alloc_free(leaves);
-    return good;
+    return true;
 }

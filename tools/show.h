@@ -17,8 +17,15 @@ struct rgb *show_colours(struct run *run);
 /* The flat shading of these colours, in place of the radiosities of the leaves. */
 struct shading *show_shading(struct run *run, struct rgb *colours);
 
-/* Collective. Draws over a picture, which rank 0 has: outlines of the leaves (--show
- * mesh, owner, level), or the links of a patch. False on an error, on all ranks. */
-bool show_overlay(struct run *run, const struct camera *camera, float *picture);
+/* Collective. Returns on rank 0 the leaf of each pixel, [width * height] local numbers, -1
+ * where there is none, to be freed with alloc_free(). NULL on the others, and where
+ * show_overlay() draws nothing. A signal leaves holes in it. */
+int32_t *show_leaves(struct run *run, const struct camera *camera);
+
+/* Collective. Draws over a picture, which rank 0 has, as it has the leaves of its pixels:
+ * outlines of the leaves (--show mesh, owner, level), or the links of a patch. False on
+ * an error, on all ranks. */
+bool show_overlay(struct run *run, const struct camera *camera, const int32_t *leaves,
+                  float *picture);
 
 #endif

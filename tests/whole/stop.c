@@ -1,14 +1,17 @@
 /* Tests of geom/stop.h and of the loops that ask it. Proved of each are: it asks as
  * often as there are steps; when it is asked to stop at once it makes less than all;
  * wherever it is asked to stop it comes back, and all memory is freed; readers give an
- * error and no scene, writers an error and the old file. */
+ * error and no scene, writers an error and the old file. A signal at any ask before a
+ * picture with outlines is written leaves the picture as it is without one. */
 #include "geom/stop.h"
 #include "geom/wall.h"
 
+#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/signals.h"
 #include "io/picture/hdr.h"
 #include "io/picture/png.h"
 #include "io/picture/pnm.h"
@@ -20,6 +23,8 @@
 #include "tests/reading.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
+#include "tools/results.h"
+#include "tools/stored.h"
 #include "tools/viewfactors/pairs.h"
 #include "tools/viewfactors/table.h"
 
@@ -217,7 +222,7 @@ static int64_t write_vtk(void)
     return look_at_output(vtk_write(shading, &none, WRITTEN, &error));
 }
 
-static const struct phase {
+static const struct loop {
     const char *name;
     int64_t (*run)(void);
     bool fails; /* being stopped is an error, and nothing is made */
@@ -245,7 +250,7 @@ static const struct phase {
 /* --- stopping them --- */
 
 /* How much a phase makes that is asked to stop from the ask `yes` on. */
-static int64_t run_until(const struct phase *phase, int64_t yes)
+static int64_t run_until(const struct loop *phase, int64_t yes)
 {
     error = (struct error){EXIT_DONE, ""};
     write_text(WRITTEN, "o");
@@ -254,7 +259,7 @@ static int64_t run_until(const struct phase *phase, int64_t yes)
     return phase->run();
 }
 
-static void test_phase(const struct phase *phase)
+static void test_phase(const struct loop *phase)
 {
     int64_t whole = run_until(phase, INT64_MAX), all = asks, wrong = 0;
     int64_t step = all / STOPS + 1, balance = alloc_balance();
@@ -271,6 +276,67 @@ static void test_phase(const struct phase *phase)
     }
     tap_ok(wrong == 0, "stopped anywhere: comes back%s",
            phase->fails ? ", with an error" : "");
+}
+
+/* --- a signal while a picture is made --- */
+
+enum ending { SHOWN, LOST, WRONG };
+
+/* A picture with outlines of the stored solution, when a signal comes at the ask `yes`:
+ * shown, as without one; or, as it was being written, lost with an error. */
+static enum ending show_until(int64_t yes, const char *whole, size_t bytes)
+{
+    char *arguments[] = {"phr", MESH_PLY, "--quiet", "--show", "mesh", "--samples", "1",
+                         "--view", "none", "-o", "ppm:" WRITTEN};
+    static char found[1000];
+    struct source source;
+    struct run run = {.comm = comm};
+    stop_when(NULL);
+    write_text(WRITTEN, "o");
+    options_parse(&run.options, sizeof arguments / sizeof *arguments, arguments,
+                  &run.error);
+    run.stored = alloc_array(1, sizeof *run.stored);
+    if (!source_open(&source, MESH_PLY, &run.error) ||
+        !solution_mesh_read(run.stored, &source, &run.error))
+        exit(1);
+    source_close(&source);
+    run.scene = run.stored->scene;
+    run.stored->scene = NULL;
+    run.cameras = alloc_array(1, sizeof *run.cameras);
+    *run.cameras = CAMERA;
+    run.octree = octree_of(run.scene);
+    stored_light(&run);
+    asks = 0;
+    first_yes = yes;
+    stop_when(is_time);
+    bool good = results_show(&run);
+    size_t size = load(WRITTEN, found, sizeof found);
+    bool shown = good && size == bytes && memcmp(found, whole, bytes) == 0;
+    bool lost = !good && run.error.code == EXIT_FAILED && size == 1 && !run.haste;
+    run_free(&run);
+    return shown ? SHOWN : lost ? LOST : WRONG;
+}
+
+/* Only while it is written a picture can be lost. */
+static void test_outlines(void)
+{
+    enum { STEP = 7 };
+    static char whole[1000];
+    int64_t counts[WRONG + 1] = {0}, balance = alloc_balance();
+    asks = 0;
+    write_ppm();
+    int64_t writing = asks;
+    signals_catch();
+    raise(SIGTERM);
+    show_until(INT64_MAX, whole, 0);
+    size_t bytes = load(WRITTEN, whole, sizeof whole);
+    int64_t all = asks;
+    for (int64_t yes = 0; yes < all; yes += STEP)
+        counts[show_until(yes, whole, bytes)]++;
+    tap_ok(counts[WRONG] == 0 && STEP * (counts[LOST] - 1) <= writing &&
+               STEP * counts[SHOWN] > 2 * SIZE * SIZE && alloc_balance() == balance,
+           "outlines: %lld signals leave the whole picture, %lld, as it is written, the "
+           "old one", (long long)counts[SHOWN], (long long)counts[LOST]);
 }
 
 static void test_questions(void)
@@ -336,6 +402,7 @@ int main(int argc, char **argv)
     test_questions();
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++)
         test_phase(&PHASES[i]);
+    test_outlines();
     stop_when(NULL);
     shading_destroy(shading);
     world_free(&world);
