@@ -23,7 +23,8 @@ waits() {
     sleep 0.5
     kill -TERM "$launched"
     finish
-    [ "$status" != hang ] && tail -n 1 "$work/err" | grep -q "^phr: stopped by SIGTERM"
+    [ "$status" != hang ] && tail -n 1 "$work/err" |
+        grep -qx "phr: stopped by SIGTERM\(: \(pixels not done\|the light is\) .*\)*"
 }
 
 # sends RANKS FORMAT ARGUMENTS...: an output goes to stdout, alone.
