@@ -256,41 +256,19 @@ static void find_unsure(struct gathering *g, const struct rgb *h, const struct r
     balance_find_unsure(&g->balance, h, reflected, again);
 }
 
-/* Collective. Raises the variances of own leaves, in g->all, to their sisters'. `by`: of
- * each leaf of the mesh, rays or segments. `all`: buffer. */
-static void raise_variances(struct gathering *g, const int *by, struct rgb *all)
-{
-    share_values(g);
-    for (int64_t k = 0; k < g->mesh.count; k++)
-        all[g->leaf[k]] = g->all[k];
-    claim_raise_to_sisters(g->solver->model.forest, g->mesh.leaves, g->mesh.count, by,
-                           all);
-}
-
 /* Collective. Claims the errors of leaves with the radiosities `b`. */
 static void claim(struct gathering *g, const struct rgb *b, double remaining,
                   double *errors)
 {
     struct equation *e = &g->equation;
     const size_t count = (size_t)e->count, bytes = sizeof *b;
-    struct rgb *mesh = alloc_array(3 * count, bytes), *rays = mesh + count;
-    struct rgb *segments = rays + count;
-    struct rgb *all = alloc_array((size_t)g->mesh.count, bytes);
+    struct rgb *mesh = alloc_array(2 * count, bytes), *rays = mesh + count;
     memcpy(own_values(g), b, count * bytes);
     show(g);
     claim_by_mesh(e, mesh);
-    claim_find_noise(e, own_values(g), segments);
-    raise_variances(g, g->mesh.rays, all);
-    for (size_t i = 0; i < count; i++)
-        rays[i] = all[e->number[i]];
-    memcpy(own_values(g), segments, count * bytes);
-    raise_variances(g, g->mesh.segments, all);
-    for (size_t i = 0; i < count; i++)
-        rgb_add(&rays[i], 1.0, all[e->number[i]]);
     claim_by_rays(e, rays);
     claim_errors(&g->balance, remaining, mesh, rays, errors,
                  &g->solver->beyond->answer->counts);
-    alloc_free(all);
     alloc_free(mesh);
 }
 

@@ -64,63 +64,6 @@ void claim_by_mesh(const struct equation *e, struct rgb *variance)
     }
 }
 
-void claim_find_noise(const struct equation *e, struct rgb *by_rays,
-                      struct rgb *by_segments)
-{
-    const struct final_gather *gather = e->gather;
-    const struct rgb *linked = gather->model->forest->radiosity;
-    for (int64_t row = 0, k = 0; row < gather->count; row++) {
-        struct rgb sums[2] = {{{0.0, 0.0, 0.0}}}, squares[2] = {{{0.0, 0.0, 0.0}}};
-        struct rgb all = {{0.0, 0.0, 0.0}};
-        for (; k < gather->rows[row].end; k++) {
-            int32_t place = gather->terms[k].place;
-            const struct rgb *b[] = {&linked[gather->order[place]], &e->radiosity[place]};
-            for (int c = 0; c < BANDS; c++) {
-                double w = (double)gather->terms[k].weight[c];
-                all.band[c] += w;
-                for (int i = 0; i < 2; i++) {
-                    sums[i].band[c] += w * b[i]->band[c];
-                    squares[i].band[c] += w * b[i]->band[c] * b[i]->band[c];
-                }
-            }
-        }
-        for (int c = 0; c < BANDS; c++) {
-            double variance[2] = {0.0, 0.0};
-            for (int i = 0; i < 2 && all.band[c] > 0.0; i++)
-                variance[i] = squares[i].band[c] -
-                              sums[i].band[c] * sums[i].band[c] / all.band[c];
-            bool any = variance[0] > 0.0 && variance[1] > 0.0;
-            double change = any ? variance[1] / variance[0] : 1.0;
-            double segments = gather->rows[row].of_segments.band[c];
-            by_rays[row].band[c] = change * (gather->rows[row].chance.band[c] - segments);
-            by_segments[row].band[c] = segments;
-        }
-    }
-}
-
-void claim_raise_to_sisters(const struct forest *forest, const int32_t *leaves,
-                            int64_t count, const int *rays, struct rgb *variance)
-{
-    const struct patch *patches = forest->patches;
-    struct rgb *sums = alloc_array((size_t)forest->count, sizeof *sums);
-    uint8_t *sisters = alloc_array((size_t)forest->count, sizeof *sisters);
-    for (int raises = 0; raises < 2; raises++)
-        for (int64_t i = 0; i < count; i++) {
-            int32_t parent = patches[leaves[i]].parent;
-            if (parent < 0)
-                continue;
-            double *v = variance[i].band;
-            sisters[parent] = (uint8_t)(sisters[parent] + !raises);
-            for (int c = 0; c < BANDS; c++)
-                if (raises)
-                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays[i]));
-                else
-                    sums[parent].band[c] += rays[i] * v[c];
-        }
-    alloc_free(sisters);
-    alloc_free(sums);
-}
-
 /* The class of a leaf by its H in a band. Each has twice the light of the one before. */
 static int class_of(double light, double mean)
 {
@@ -207,7 +150,8 @@ void claim_by_rays(const struct equation *e, struct rgb *variance)
     for (int32_t k = 0; k < all; k++)
         ratios[k] = ratio_of_sequence(&classes[k]);
     for (int64_t k = 0; k < BANDS * e->count; k++)
-        variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
+        variance[k / BANDS].band[k % BANDS] =
+            ratios[own_class[k]] * e->gather->rows[k / BANDS].chance.band[k % BANDS];
     alloc_free(own_class);
     alloc_free(ratios);
     alloc_free(classes);

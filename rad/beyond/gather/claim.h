@@ -10,22 +10,9 @@
  * variances. Pre: e->radiosity is the solution, as for the next. */
 void claim_by_mesh(const struct equation *e, struct rgb *variance);
 
-/* Finds two variances of each row, as by chance: that by rays, and that by segments. Rows
- * were made with the light of the links, which may have brought much through a window, or
- * none. So the one by rays is scaled as the variance of B over its terms changes, as if
- * each ray brought the light of one. Pre: the forest has the light of the links. */
-void claim_find_noise(const struct equation *e, struct rgb *by_rays,
-                      struct rgb *by_segments);
-
-/* Raises the variance of leaves, [count], to the mean over their sisters, each by one
- * ray. The rays of a leaf may have missed a small bright thing that a sister has found:
- * then its light is too dark, and its own variance too small. `rays`: of each leaf; or
- * segments. */
-void claim_raise_to_sisters(const struct forest *forest, const int32_t *leaves,
-                            int64_t count, const int *rays, struct rgb *variance);
-
-/* Collective. Makes variances by chance those of a sequence. The ratio of the two is
- * estimated over the leaves of a space with about as much light. */
+/* Collective. Finds the variance of each row by rays and segments: the one by chance,
+ * times the ratio of a sequence's variance to that. The ratio is estimated over the
+ * leaves of a space with about as much light. */
 void claim_by_rays(const struct equation *e, struct rgb *variance);
 
 /* Collective. Finds the bound on the error of B of 95 % of leaves, `error`, W/m^2, by the
