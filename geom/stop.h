@@ -15,8 +15,7 @@ void stop_when(bool (*asked)(void));
  * no other use. */
 bool stop_is_asked(void);
 
-/* Takes the question for heeded: stop_is_asked() is false from here on, and a run shows
- * what it has. */
+/* Heeds the question: stop_is_asked() is false from here on. A run shows its light. */
 void stop_heed(void);
 
 /* True if the program has been asked to stop, heeded or not: nothing is waited for. */

@@ -17,8 +17,8 @@ struct rgb *show_colours(struct run *run);
 /* The flat shading of these colours, in place of the radiosities of the leaves. */
 struct shading *show_shading(struct run *run, struct rgb *colours);
 
-/* Collective. Returns on rank 0 the leaf of each pixel, [width * height] local numbers, -1
- * where there is none, to be freed with alloc_free(). NULL on the others, and where
+/* Collective. Returns on rank 0 the leaf of each pixel, [width * height] local numbers,
+ * -1 where there is none, to be freed with alloc_free(). NULL on the others, and where
  * show_overlay() draws nothing. A signal leaves holes in it. */
 int32_t *show_leaves(struct run *run, const struct camera *camera);
 
