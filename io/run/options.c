@@ -7,34 +7,12 @@
 
 #include <ctype.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "io/run/option.h"
 #include "io/scene/camera.h"
 #include "io/scene/text.h"
-
-struct argument;
-
-struct option {
-    const char *name;
-    const char *value;   /* name in the help; "" of a flag */
-    const char *help;    /* a few words, the default in brackets; of a refused option, the
-                            command for its work */
-    bool (*set)(const struct argument *argument); /* NULL: refused */
-    size_t offset;       /* of the field in struct options */
-    double low, high;    /* inclusive range of a number */
-    const char *choices; /* names, separated by bars, in the order of the field's enum */
-};
-
-/* An option on the command line, on its way to its field. */
-struct argument {
-    const struct option *option;
-    const char *value; /* not looked at for a flag */
-    struct options *options;
-    void *field; /* the option's, of the options */
-    struct error *error;
-};
 
 bool options_show(const struct options *options, int view)
 {
@@ -44,10 +22,6 @@ bool options_show(const struct options *options, int view)
             return true;
     return false;
 }
-
-/* --- values --- */
-
-enum { NOT_GIVEN = -1 }; /* rays of the final gather */
 
 /* A picture before all views belongs to the first. */
 static bool add_output(const struct argument *a)
@@ -65,44 +39,7 @@ static bool add_view(const struct argument *a)
     return true;
 }
 
-static bool is_not(const struct argument *a, const char *kind)
-{
-    return error_set(a->error, EXIT_USAGE, "%s: '%s' is not %s", a->option->name,
-                     a->value, kind);
-}
-
-/* Checks the range of a number, which messages tell in these units. */
-static bool check_range(const struct argument *a, double number, double unit,
-                        const char *after_low, const char *after_high)
-{
-    double low = a->option->low, high = a->option->high;
-    if (number >= low && number <= high)
-        return true;
-    return error_set(a->error, EXIT_USAGE, "%s: %s is not between %g%s and %g%s",
-                     a->option->name, a->value, low / unit, after_low, high / unit,
-                     after_high);
-}
-
-static bool set_real(const struct argument *a)
-{
-    double *number = a->field;
-    if (!text_is_number(a->value, number))
-        return is_not(a, "a number");
-    return check_range(a, *number, 1.0, "", "");
-}
-
-static bool set_integer(const struct argument *a)
-{
-    double number;
-    struct argument real = *a;
-    real.field = &number;
-    if (!set_real(&real))
-        return false;
-    if (number != (double)(int)number)
-        return is_not(a, "a whole number");
-    *(int *)a->field = (int)number;
-    return true;
-}
+enum { NOT_GIVEN = -1 }; /* rays of the final gather */
 
 static bool set_size(const struct argument *a)
 {
@@ -117,146 +54,7 @@ static bool set_size(const struct argument *a)
     }
     char kind[60];
     snprintf(kind, sizeof kind, "WIDTHxHEIGHT, each from 1 to %d", (int)IMAGE_SIZE_MAX);
-    return is_not(a, kind);
-}
-
-/* Sets an enum: an int, with a constant for each choice, counted from 0. */
-static bool set_choice(const struct argument *a)
-{
-    size_t length = strlen(a->value);
-    int number = 0;
-    for (const char *at = a->option->choices; at; at = strchr(at, '|'), number++) {
-        at += *at == '|';
-        if (strcspn(at, "|") == length && strncmp(at, a->value, length) == 0) {
-            *(int *)a->field = number;
-            return true;
-        }
-    }
-    char kind[100];
-    snprintf(kind, sizeof kind, "one of %s", a->option->choices);
-    return is_not(a, kind);
-}
-
-enum { DIGITS_ROOM = 64 };
-
-/* Copies the first characters of a text. False if there is no room. */
-static bool copy_digits(const char *text, size_t length, char digits[DIGITS_ROOM])
-{
-    snprintf(digits, DIGITS_ROOM, "%.*s", (int)length, text);
-    return length < DIGITS_ROOM;
-}
-
-/* Reads as many numbers as there are, but `most`, with commas between; 0: others. */
-static int read_list(const char *at, int most, double *numbers)
-{
-    for (int count = 0; count < most; at++) {
-        char digits[DIGITS_ROOM];
-        size_t length = strcspn(at, ",");
-        if (!copy_digits(at, length, digits) ||
-            !text_is_number(digits, &numbers[count++]))
-            return 0;
-        at += length;
-        if (!*at)
-            return count;
-    }
-    return 0;
-}
-
-/* Sets a sky: a number for all bands, or R,G,B, alone or behind a name; or a file. */
-static bool set_sky(const struct argument *a)
-{
-    static const char *const NAMES[] = {[SKY_OVERCAST] = "overcast,",
-                                        [SKY_CLEAR] = "clear,"};
-    struct sky *sky = a->field;
-    const char *at = a->value;
-    double numbers[BANDS];
-    sky->kind = strspn(at, "0123456789.,+-eE") == strlen(at) ? SKY_UNIFORM : SKY_TABLE;
-    for (int kind = SKY_OVERCAST; kind <= SKY_CLEAR; kind++)
-        if (strncmp(a->value, NAMES[kind], strlen(NAMES[kind])) == 0) {
-            sky->kind = (enum sky_kind)kind;
-            at += strlen(NAMES[kind]);
-        }
-    sky->path = sky->kind == SKY_TABLE ? a->value : NULL;
-    if (sky->path)
-        return true;
-    int count = read_list(at, BANDS, numbers);
-    if (count != 1 && count != BANDS)
-        return is_not(a, "a number, three as in R,G,B, overcast,L, clear,L, or a file");
-    for (int c = 0; c < BANDS; c++) {
-        sky->level.band[c] = numbers[c % count];
-        if (!check_range(a, sky->level.band[c], 1.0, "", ""))
-            return false;
-    }
-    if (sky->kind == SKY_UNIFORM && !(rgb_sum(sky->level) > 0.0))
-        sky->kind = SKY_NONE;
-    return true;
-}
-
-static bool set_sun(const struct argument *a)
-{
-    struct sky *sky = a->field;
-    double n[4];
-    if (read_list(a->value, 4, n) != 4)
-        return is_not(a, "x,y,z,W");
-    sky->sun = (struct vec3){n[0], n[1], n[2]};
-    sky->sun_irradiance = n[3];
-    if (!(vec3_length(sky->sun) > 0.0))
-        return is_not(a, "a direction and W/m^2");
-    return check_range(a, n[3], 1.0, "", "");
-}
-
-/* Sets a fraction: a number, or a percentage. Of 5, 5% may be meant. */
-static bool set_fraction(const struct argument *a)
-{
-    char digits[DIGITS_ROOM];
-    double *field = a->field;
-    size_t length = strlen(a->value);
-    bool percents = length >= 2 && a->value[length - 1] == '%' &&
-                    copy_digits(a->value, length - 1, digits);
-    if (!text_is_number(percents ? digits : a->value, field))
-        return is_not(a, "a number");
-    if (!percents)
-        return check_range(a, *field, 1.0, "", "; percents end in %, as in 1%");
-    *field /= 100.0;
-    return check_range(a, *field, 0.01, " %", " %");
-}
-
-/* Sets a time in seconds: a number, of s, m or h, if that stands behind it. */
-static bool set_time(const struct argument *a)
-{
-    static const char UNITS[] = "smh";
-    static const int SECONDS[] = {1, 60, 3600};
-    char digits[DIGITS_ROOM];
-    size_t length = strlen(a->value);
-    const char *unit = length > 0 ? strchr(UNITS, a->value[length - 1]) : NULL;
-    double number;
-    if (!copy_digits(a->value, length - (unit ? 1 : 0), digits) ||
-        !text_is_number(digits, &number))
-        return is_not(a, "a time, as 90, 90s, 5m or 1h");
-    number *= unit ? SECONDS[unit - UNITS] : 1;
-    if (!check_range(a, number, 1.0, " s", " s"))
-        return false;
-    *(int *)a->field = (int)number;
-    return true;
-}
-
-/* Sets a number of bytes, or of K, M, G or T: powers of 1024. */
-static bool set_bytes(const struct argument *a)
-{
-    static const char UNITS[] = "KMGT";
-    const char *at = a->value;
-    int64_t digits; /* at most 18 of them */
-    bool number = text_integer(&at, &digits);
-    const char *unit = number && *at ? strchr(UNITS, *at) : NULL;
-    if (!number || at[unit != NULL] != '\0')
-        return is_not(a, "a number of bytes, such as 512M or 2G");
-    double bytes = strtod(a->value, NULL);
-    for (const char *u = UNITS; unit && u <= unit; u++)
-        bytes *= 1024.0;
-    if (!check_range(a, bytes, 1.0, "", " bytes"))
-        return false;
-    *(int64_t *)a->field = (int64_t)bytes;
-    return true;
+    return option_is_not(a, kind);
 }
 
 /* Sets rays and pixels: N, "pixels", or both as "N,pixels". Without N the number is the
@@ -268,16 +66,16 @@ static bool set_gather(const struct argument *a)
     const char *comma = strrchr(a->value, ',');
     a->options->pixels = strcmp(comma ? comma + 1 : a->value, "pixels") == 0;
     if (!a->options->pixels && !strpbrk(a->value, ",p"))
-        return set_integer(a);
+        return option_set_integer(a);
     if (a->options->pixels && !comma) {
         *(int *)a->field = NOT_GIVEN;
         return true;
     }
     if (!a->options->pixels ||
-        !copy_digits(a->value, (size_t)(comma - a->value), number))
-        return is_not(a, "N, pixels or N,pixels");
+        !option_copy_digits(a->value, (size_t)(comma - a->value), number))
+        return option_is_not(a, "N, pixels or N,pixels");
     rays.value = number;
-    return set_integer(&rays);
+    return option_set_integer(&rays);
 }
 
 /* Sets what pictures show: a choice, with links the patch behind a colon. */
@@ -293,24 +91,7 @@ static bool set_show(const struct argument *a)
         return error_set(a->error, EXIT_USAGE,
                          "%s links: of which patch? As in links:5/023 or links:X,Y",
                          a->option->name);
-    return set_choice(a);
-}
-
-/* Sets the path of a file, of which there is one. */
-static bool set_text(const struct argument *a)
-{
-    const char **field = a->field;
-    if (*field)
-        return error_set(a->error, EXIT_USAGE, "%s is given twice: %s and %s",
-                         a->option->name, *field, a->value);
-    *field = a->value;
-    return true;
-}
-
-static bool set_flag(const struct argument *a)
-{
-    *(bool *)a->field = true;
-    return true;
+    return option_set_choice(a);
 }
 
 static bool set_paper(const struct argument *a)
@@ -328,11 +109,11 @@ static bool set_paper(const struct argument *a)
 /* --- the table --- */
 
 #define FIELD(name) offsetof(struct options, name)
-#define FLAG(name) set_flag, FIELD(name), 0, 0, NULL
-#define TEXT(name) set_text, FIELD(name), 0, 0, NULL
-#define REAL(name, low, high) set_real, FIELD(name), low, high, NULL
-#define WHOLE(name, low, high) set_integer, FIELD(name), low, high, NULL
-#define CHOICE(name, choices) set_choice, FIELD(name), 0, 0, choices
+#define FLAG(name) option_set_flag, FIELD(name), 0, 0, NULL
+#define TEXT(name) option_set_text, FIELD(name), 0, 0, NULL
+#define REAL(name, low, high) option_set_real, FIELD(name), low, high, NULL
+#define WHOLE(name, low, high) option_set_integer, FIELD(name), low, high, NULL
+#define CHOICE(name, choices) option_set_choice, FIELD(name), 0, 0, choices
 #define OTHER(set) set, 0, 0, 0, NULL
 
 static const struct option OPTIONS[] = {
@@ -351,7 +132,7 @@ static const struct option OPTIONS[] = {
     {"--report", "FILE", "by object, CSV", TEXT(report)},
     {"--epsilon", "E", "error of a link (1e-4)", REAL(criterion.epsilon, 0, 1e30)},
     {"--accuracy", "A", "refine to this error",
-     set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
+     option_set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
     {"--max-level", "N", "",
      WHOLE(criterion.max_level, 0, ID_MAX_LEVEL)},
     {"--min-area", "A", "", REAL(criterion.min_area, 0, 1)},
@@ -372,15 +153,16 @@ static const struct option OPTIONS[] = {
     {"--two-sided-lamps", "", "and those of lamps", FLAG(two_sided_lamps)},
     {"--ke", "radiosity|radiance", "Blender: 2nd", CHOICE(ke, "radiosity|radiance")},
     {"--up", "y|z|-y|-z|x|-x", "(guessed)", CHOICE(up, "guessed|y|z|-y|-z|x|-x")},
-    {"--sky", "B|overcast,L|clear,L|FILE", "", set_sky, FIELD(sky), 0, 1e30, NULL},
-    {"--sun", "X,Y,Z,W", "", set_sun, FIELD(sky), 0, 1e30, NULL},
+    {"--sky", "B|overcast,L|clear,L|FILE", "", option_set_sky, FIELD(sky), 0, 1e30, NULL},
+    {"--sun", "X,Y,Z,W", "", option_set_sun, FIELD(sky), 0, 1e30, NULL},
     {"--save-links", "F", "", TEXT(save_links)},
     {"--load-links", "F", "", TEXT(load_links)},
     {"--checkpoint", "F", "after each pass", TEXT(checkpoint)},
     {"--every", "N", "", WHOLE(every, 1, 1e9)},
     {"--resume", "F", "go on from there", TEXT(resume)},
-    {"--time", "T", "", set_time, FIELD(seconds), 1, 1e9, NULL},
-    {"--memory", "M", "limit, as in 2G (80%)", set_bytes, FIELD(memory), 1, 1e18, NULL},
+    {"--time", "T", "", option_set_time, FIELD(seconds), 1, 1e9, NULL},
+    {"--memory", "M", "limit, as in 2G (80%)",
+     option_set_bytes, FIELD(memory), 1, 1e18, NULL},
     {"--stats", "FILE", "report as JSON", TEXT(stats)},
     {"--dump", "patches|links", "", CHOICE(dump, "nothing|patches|links")},
     {"--verbose", "", "", FLAG(verbose)},
@@ -565,34 +347,10 @@ static char settings[1000]; /* of the last call of describe_all() */
 /* Appends a line "--option value" to the settings. */
 static void describe(const struct options *options, const char *name)
 {
+    size_t at = strlen(settings);
     const struct option *option = find_option(name);
-    const char *field = (const char *)options + option->offset, *choice = option->choices;
-    size_t at = strlen(settings), room = sizeof settings - at;
-    char *line = settings + at;
-    if (option->set == set_flag)
-        snprintf(line, room, "%s %s\n", name,
-                 *(const bool *)(const void *)field ? "on" : "off");
-    else if (option->set == set_integer || option->set == set_gather)
-        snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
-    else if (option->set == set_sky || option->set == set_sun) {
-        static const char *const NAMES[] = {"", "", "overcast,", "clear,", ""};
-        const struct sky *sky = (const void *)field;
-        const double *light = sky->level.band;
-        if (option->set == set_sun)
-            snprintf(line, room, "%s %.17g,%.17g,%.17g,%.17g\n", name, sky->sun.x,
-                     sky->sun.y, sky->sun.z, sky->sun_irradiance);
-        else if (sky->path)
-            snprintf(line, room, "%s %.200s\n", name, sky->path);
-        else
-            snprintf(line, room, "%s %s%.17g,%.17g,%.17g\n", name, NAMES[sky->kind],
-                     light[0], light[1], light[2]);
-    } else if (option->set != set_choice)
-        snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
-    else {
-        for (int k = *(const int *)(const void *)field; k > 0; k--)
-            choice = strchr(choice, '|') + 1;
-        snprintf(line, room, "%s %.*s\n", name, (int)strcspn(choice, "|"), choice);
-    }
+    option_write(option, (const char *)options + option->offset, settings + at,
+                 sizeof settings - at);
 }
 
 static const char *describe_all(const struct options *options, const char *const *names)
