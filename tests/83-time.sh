@@ -12,13 +12,13 @@ pixels="pixels not done have the light of the mesh"
 # shown RELATIVE: the picture is off from the whole one by less, RMS of blocks. (A black
 # one is off by 1.)
 shown() {
-    build/imgdiff "$work/new.pfm" "$work/whole.pfm" --blocks 20 --below 2 \
+    build/imgdiff "$work/new.pfm" "$work/whole.pfm" --blocks 40 --below 2 \
         --rms "$1" >"$work/diff" || { sed 's/^/# /' "$work/diff"; false; }
 }
-./phr scenes/cornell.obj $view --size 200x200 --quiet -o "$work/whole.pfm"
+./phr scenes/cornell.obj $view --size 400x400 --quiet -o "$work/whole.pfm"
 for ranks in 1 3; do
     rm -f "$work"/new.*
-    $MPIEXEC -n $ranks ./phr scenes/cornell.obj $view --size 200x200 --epsilon 1e-7 \
+    $MPIEXEC -n $ranks ./phr scenes/cornell.obj $view --size 400x400 --epsilon 1e-7 \
         --time 2 -o "$work/new.pfm" -o "$work/new.ply" >"$work/out" 2>"$work/err"
     check "refinement out of time, on $ranks: status 1" [ $? = 1 ]
     check "the light is that of the links" says --time "$links"
@@ -26,7 +26,7 @@ for ranks in 1 3; do
     check "the mesh is whole" [ "$(build/imgdiff "$work/new.ply" "$work/new.ply" |
         sed -n 's/^max *//p')" = 0 ]
 
-    start $ranks scenes/cornell.obj $view --size 200x200 --final-gather 16384 \
+    start $ranks scenes/cornell.obj $view --size 400x400 --final-gather 16384 \
         -o "$work/new.pfm"
     wait_for 1 "(0 split)"
     sleep 1
@@ -36,7 +36,7 @@ for ranks in 1 3; do
     check "so is that" says SIGTERM "$links"
     check "it is about right" shown .3
 
-    $MPIEXEC -n $ranks ./phr scenes/cornell.obj $view --size 200x200 --epsilon 1e-2 \
+    $MPIEXEC -n $ranks ./phr scenes/cornell.obj $view --size 400x400 --epsilon 1e-2 \
         --final-gather 16,pixels --samples 64 --time 4 -o "$work/new.pfm" \
         >"$work/out" 2>"$work/err"
     check "a picture out of time, on $ranks: status 1" [ $? = 1 ]
