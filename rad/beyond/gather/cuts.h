@@ -71,8 +71,8 @@ void cuts_count(struct cuts *cuts);
  * cuts_count(). */
 void cuts_learn(struct cuts *cuts);
 
-/* Forgets all cuts, if they have many nodes: they are made again, and the same, when asked
- * for. Pre: they are not counted, and no cut is in use. */
+/* Forgets all cuts, if they have many nodes: they are made again, and the same, when
+ * asked for. Pre: they are not counted, and no cut is in use. */
 void cuts_limit(struct cuts *cuts);
 
 /* Returns the cut of the region of a leaf, made when first asked for: a pure function of
