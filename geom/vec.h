@@ -80,13 +80,6 @@ static inline bool vec3_is_equal(struct vec3 a, struct vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Below 0, 0 or above 0, by x, then y, then z: for qsort(). */
-static inline int vec3_compare(struct vec3 a, struct vec3 b)
-{
-    int x = (a.x > b.x) - (a.x < b.x), y = (a.y > b.y) - (a.y < b.y);
-    return x ? x : y ? y : (a.z > b.z) - (a.z < b.z);
-}
-
 /* As fmin() and fmax() for numbers that are not NaN; compilers make each one
  * instruction. */
 static inline double real_min(double a, double b)

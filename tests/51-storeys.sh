@@ -19,10 +19,10 @@ files_run                20    20
 calls_to_form_factor      6     7
 includes_of_beyond        0     0
 ground_floor_lines 4497  4500
-source_lines      34706 16000
+source_lines      34699 16000
 test_lines        31379 16000
 long_lines                0     0
-lines_of_geom          3652  3500
+lines_of_geom          3645  3500
 lines_of_octree        2553  2600
 lines_of_io       11537  8600
 lines_of_lib            228   300

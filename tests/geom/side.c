@@ -29,8 +29,8 @@ static bool is_same(const struct triangle *triangles, int32_t s, int32_t t)
 {
     struct vec3 a = side_start(triangles, s), b = side_end(triangles, s);
     struct vec3 c = side_start(triangles, t), d = side_end(triangles, t);
-    return (vec3_compare(a, c) == 0 && vec3_compare(b, d) == 0) ||
-           (vec3_compare(a, d) == 0 && vec3_compare(b, c) == 0);
+    return (vec3_is_equal(a, c) && vec3_is_equal(b, d)) ||
+           (vec3_is_equal(a, d) && vec3_is_equal(b, c));
 }
 
 int main(void)
