@@ -100,25 +100,26 @@ static double by_segment(const struct place *at, struct choice lamp, double u, d
 
 /* The light of node k of a cut by which it is chosen. `upto` has shares that are seen in
  * it, by their root: the share of few segments is a guess. */
-static double light_of(const struct cut_node *nodes, int64_t k, bool seen)
+static double light_of(const struct cuts *cuts, struct cut cut, int64_t k, bool seen)
 {
-    double light = nodes[k].upto - (k > 0 ? nodes[k - 1].upto : 0.0);
-    return seen ? light : light / sqrt(nodes[k].seen);
+    const struct cut_node *node = &cuts->nodes[cut.first + k];
+    double light = node->upto - (k > 0 ? node[-1].upto : 0.0);
+    return seen ? light : light / sqrt(cut_seen(&cut, node));
 }
 
 /* Chooses a node of a cut, and a lamp of it by power; u in [0, 1). */
 static struct choice choose(const struct cuts *cuts, struct cut cut, double u, bool seen)
 {
-    const struct cut_node *nodes = cuts->nodes + cut.first;
     double all = 0.0;
     int64_t k = 0;
     for (; k < cut.count; k++)
-        all += light_of(nodes, k, seen);
+        all += light_of(cuts, cut, k, seen);
     double left = u * all;
-    for (k = 0; k < cut.count - 1 && left >= light_of(nodes, k, seen); k++)
-        left -= light_of(nodes, k, seen);
-    double light = light_of(nodes, k, seen);
-    const struct sender_node *node = &cuts->senders->nodes[nodes[k].node];
+    for (k = 0; k < cut.count - 1 && left >= light_of(cuts, cut, k, seen); k++)
+        left -= light_of(cuts, cut, k, seen);
+    double light = light_of(cuts, cut, k, seen);
+    int32_t number = cuts->nodes[cut.first + k].node;
+    const struct sender_node *node = &cuts->senders->nodes[number];
     struct choice lamp = sender_choose(cuts->senders, node, left / light);
     lamp.share *= all / light;
     return lamp;

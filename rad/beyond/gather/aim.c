@@ -271,38 +271,38 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
     double all = 0.0, sum = 0.0, found = 0.0;
     RESERVE(aims->offers, &aims->offer_capacity, cut.count);
     for (int64_t i = 0; i < cut.count; i++) {
-        const struct sender_node *node =
-            &senders->nodes[cuts->nodes[cut.first + i].node];
+        const struct cut_node *at = &cuts->nodes[cut.first + i];
+        const struct sender_node *node = &senders->nodes[at->node];
         double blind = cuts_blind_part(senders, node, space);
         double worth = sender_node_worth(senders, node, &own) * blind;
-        aims->offers[i] = (struct offer){worth, -1.0, blind};
+        aims->offers[i] =
+            (struct offer){worth, -1.0, blind, cut_found(&cut, at, blind)};
         all += worth;
     }
     for (int64_t i = 0; i < cut.count; i++) {
-        const struct cut_node *at = &cuts->nodes[cut.first + i];
+        const struct sender_node *node =
+            &senders->nodes[cuts->nodes[cut.first + i].node];
         struct offer *offer = &aims->offers[i];
-        if (offer->worth * segments >= all &&
-            is_near_sender(&senders->nodes[at->node], &own))
-            make_exact(r, senders, &senders->nodes[at->node], offer);
+        if (offer->worth * segments >= all && is_near_sender(node, &own))
+            make_exact(r, senders, node, offer);
         sum += offer->worth;
-        found += offer->worth / offer->blind * at->found;
+        found += offer->worth / offer->blind * offer->found;
     }
     double part = found > 0.0 ? 0.5 * sum / found : 0.0;
-    for (int64_t i = 0; i < cut.count; i++)
-        aims->offers[i].worth *=
-            (found > 0.0 ? 0.5 : 1.0) +
-            part * cuts->nodes[cut.first + i].found / aims->offers[i].blind;
+    for (int64_t i = 0; i < cut.count; i++) {
+        struct offer *offer = &aims->offers[i];
+        offer->worth *= (found > 0.0 ? 0.5 : 1.0) + part * offer->found / offer->blind;
+    }
     return sum / segments;
 }
 
 /* The share of a node's light that a leaf may see although all of its segments miss. By
- * segments of the node's own looks alone: node.seen takes those of other nodes for as
+ * segments of the node's own looks alone: cut_seen() takes those of other nodes for as
  * many more, and all of these miss behind the same wall. */
-static double share_in_doubt(const struct cut_node *node)
+static double share_in_doubt(const struct cut *cut, const struct cut_node *node)
 {
-    return node->asked == 0
-               ? node->seen
-               : ((double)node->arrived + 0.5) / (double)(node->asked + 1);
+    return node->asked == 0 ? cut_seen(cut, node)
+                            : (node->arrived + 0.5) / (node->asked + 1.0);
 }
 
 /* Aims at the nodes of a cut. A node with the light of a segment or more gets segments of
@@ -329,7 +329,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         double worth = offers[i].worth;
         bool sure = worth >= each;
         const struct sender_node *at = &cuts->senders->nodes[node.node];
-        bool unseen = at->space != space && !(node.found > 0.0);
+        bool unseen = at->space != space && !(offers[i].found > 0.0);
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;
@@ -348,7 +348,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             cuts->tally[2 * (cut.first + i)] += aim.fired - before.fired;
             cuts->tally[2 * (cut.first + i) + 1] += aim.arrived - before.arrived;
         }
-        double share = share_in_doubt(&node);
+        double share = share_in_doubt(&cut, &node);
         if (!none && at->space != space)
             r->gather->counts.crossed++;
         if (none && unseen) {

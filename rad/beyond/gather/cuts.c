@@ -150,29 +150,37 @@ static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t 
     return sum;
 }
 
+double cut_seen(const struct cut *cut, const struct cut_node *node)
+{
+    return (node->arrived + cut->mean) / (node->asked + 1.0);
+}
+
+double cut_found(const struct cut *cut, const struct cut_node *node, double blind)
+{
+    if (node->asked > 0)
+        return (double)node->arrived / node->asked;
+    return blind < 1.0 ? 0.0 : cut_seen(cut, node);
+}
+
 /* Finds the shares of the nodes of a region's cut by the segments counted so far. */
 static void find_shares(struct cuts *cuts, int32_t region)
 {
-    struct cut cut = cuts->cuts[region];
+    struct cut *cut = &cuts->cuts[region];
+    struct cut_node *nodes = cuts->nodes + cut->first;
     int32_t space = node_space(cuts->senders->model, cuts->regions->nodes[region]);
     double upto = 0.0, arrived = 0.5, asked = 1.0;
-    for (int64_t i = cut.first; i < cut.first + cut.count; i++) {
-        arrived += (double)cuts->nodes[i].arrived;
-        asked += (double)cuts->nodes[i].asked;
+    for (int64_t i = 0; i < cut->count; i++) {
+        arrived += nodes[i].arrived;
+        asked += nodes[i].asked;
     }
-    for (int64_t i = cut.first; i < cut.first + cut.count; i++) {
-        struct cut_node *node = &cuts->nodes[i];
-        const struct sender_node *at = &cuts->senders->nodes[node->node];
-        double blind = cuts_blind_part(cuts->senders, at, space);
-        node->seen =
-            ((double)node->arrived + arrived / asked) / (double)(node->asked + 1);
-        if (node->asked > 0)
-            node->found = (double)node->arrived / (double)node->asked;
-        else
-            node->found = blind < 1.0 ? 0.0 : node->seen;
-        double light = node->arrived > 0 ? node->worth : blind * node->worth;
-        upto += light * sqrt(node->seen);
-        node->upto = upto;
+    cut->mean = arrived / asked;
+    for (int64_t i = 0; i < cut->count; i++) {
+        const struct sender_node *at = &cuts->senders->nodes[nodes[i].node];
+        double light = nodes[i].worth;
+        if (nodes[i].arrived == 0)
+            light *= cuts_blind_part(cuts->senders, at, space);
+        upto += light * sqrt(cut_seen(cut, &nodes[i]));
+        nodes[i].upto = upto;
     }
 }
 
@@ -203,8 +211,11 @@ void cuts_count(struct cuts *cuts)
 void cuts_learn(struct cuts *cuts)
 {
     for (int64_t i = 0; i < cuts->count; i++) {
-        cuts->nodes[i].asked += cuts->tally[2 * i];
-        cuts->nodes[i].arrived += cuts->tally[2 * i + 1];
+        struct cut_node *node = &cuts->nodes[i];
+        if (cuts->tally[2 * i] <= INT32_MAX - node->asked) { /* else it is known well */
+            node->asked += (int32_t)cuts->tally[2 * i];
+            node->arrived += (int32_t)cuts->tally[2 * i + 1];
+        }
         cuts->tally[2 * i] = cuts->tally[2 * i + 1] = 0;
     }
     for (int32_t region = 0; region < cuts->regions->count; region++)
@@ -224,7 +235,7 @@ struct cut cuts_at(struct cuts *cuts, int32_t leaf)
 {
     int32_t region = cuts->regions->of[leaf];
     if (region < 0)
-        return (struct cut){0, 0};
+        return (struct cut){0, 0, 1.0};
     if (cuts->cuts[region].first < 0)
         make_cut(cuts, region);
     return cuts->cuts[region];

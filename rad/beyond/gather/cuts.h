@@ -27,13 +27,10 @@ void regions_destroy(struct regions *regions);
 /* A node of a cut. */
 struct cut_node {
     int32_t node;    /* of the tree of senders */
-    int64_t asked;   /* segments of looks from the region to the node */
-    int64_t arrived; /* those of them that nothing blocks */
+    int32_t asked;   /* segments of looks from the region to the node */
+    int32_t arrived; /* those of them that nothing blocks */
     double worth;    /* light reaching the region, about, with nothing in the way, over
                         all bands, W/m^2 */
-    double found;    /* arrived / asked, by which segments are dealt, 1; not asked: seen,
-                        or 0 if of a brighter space */
-    double seen;     /* the same, with the cut's mean for one segment more: above 0 */
     double upto;     /* light by which one of the nodes is chosen, of those up to this
                         one, W/m^2 */
 };
@@ -41,6 +38,7 @@ struct cut_node {
 struct cut {
     int64_t first; /* of its nodes; -1: not made yet */
     int64_t count;
+    double mean;   /* share of segments that arrive, of all its nodes, 1: above 0 */
 };
 
 struct cuts {
@@ -78,6 +76,14 @@ void cuts_limit(struct cuts *cuts);
 /* Returns the cut of the region of a leaf, made when first asked for: a pure function of
  * the region and of what has been learnt, so the same on any rank. */
 struct cut cuts_at(struct cuts *cuts, int32_t leaf);
+
+/* The visible share of a node, 1: arrived / asked, with the cut's mean for one segment
+ * more. Above 0. */
+double cut_seen(const struct cut *cut, const struct cut_node *node);
+
+/* The share by which segments are dealt, 1: arrived / asked. Not asked: the visible share,
+ * or 0 if `blind`, the node's cuts_blind_part(), is below 1. */
+double cut_found(const struct cut *cut, const struct cut_node *node, double blind);
 
 /* Chooses a sender of a cut for a point of its region by the light known to arrive there;
  * `u` in [0, 1). patch -1: none. */

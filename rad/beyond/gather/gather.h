@@ -85,6 +85,7 @@ struct offer {
     double worth;  /* by which segments are dealt, over all bands, W/m^2 */
     double factor; /* the exact form factor of a single near sender, 1; else -1 */
     double blind;  /* see cuts_blind_part() */
+    double found;  /* see cut_found() */
 };
 
 /* Senders as targets of segments. */

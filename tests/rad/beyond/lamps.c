@@ -418,7 +418,7 @@ static struct counted count_lamp(const struct cuts *cuts, struct cut cut, int32_
             continue;
         counted.asked += (double)node->asked;
         counted.arrived += (double)node->arrived;
-        counted.found = node->found;
+        counted.found = cut_found(&cut, node, 1.0);
     }
     return counted;
 }
@@ -450,6 +450,7 @@ static void test_shares(void)
         if (cuts->senders->patches[cuts->senders->nodes[cuts->nodes[i].node].first] >= 8)
             cuts->tally[2 * i] = cuts->tally[2 * i + 1] = 0;
     cuts_learn(cuts);
+    cut = cuts_at(cuts, 0);
     struct counted seen = count_lamp(cuts, cut, 2), hidden = count_lamp(cuts, cut, 4);
     struct counted half = count_lamp(cuts, cut, 6), none = count_lamp(cuts, cut, 8);
     double part = half.arrived / half.asked;
