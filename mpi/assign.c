@@ -127,11 +127,11 @@ static int *choose_leaving(const struct solver *solver, const int64_t *loads)
 static void send_links(struct solver *solver, int64_t first, const int *to)
 {
     int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
-    for (int64_t i = 0; i < solver->links.count; i++) {
+    for (int64_t i = 0; i < first; i++)
+        destination[i] = solver->comm->rank;
+    for (int64_t i = first; i < solver->links.count; i++) {
         int32_t node = smaller_of(solver->model.forest, &solver->links.items[i]);
-        destination[i] = i < first ? solver->comm->rank
-                         : to      ? to[solver->memory.clusters + node]
-                                   : home_of(solver, node);
+        destination[i] = to ? to[solver->memory.clusters + node] : home_of(solver, node);
     }
     links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
