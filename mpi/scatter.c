@@ -139,24 +139,29 @@ static const struct record_kind LIGHT = {CARGO_LIGHT, sizeof(struct rgb), pack_l
 /* Marks in routes->known: a proxy. */
 enum { ALWAYS = INT32_MAX };
 
-/* True of a node of another home that is not marked so far, or with less; marks it. */
-static bool is_new(struct solver *solver, int32_t node, int32_t mark)
+/* The marks in routes->known, with room for all nodes; that of a cluster is below 0. */
+static int32_t *marks_of(struct solver *solver)
 {
     struct routes *routes = &solver->routes;
     int64_t clusters = solver->memory.clusters, before = routes->capacity,
             all = solver->model.forest->count + clusters;
-    if (home_of(solver, node) == solver->comm->rank)
-        return false;
     if (before < all) {
         RESERVE(routes->known, &routes->capacity, all);
         memset(routes->known + before, 0,
                (size_t)(routes->capacity - before) * sizeof *routes->known);
     }
-    int32_t *known = &routes->known[clusters + node];
-    if (*known >= mark)
+    return routes->known + clusters;
+}
+
+/* True of a node of another home that is not marked so far, or with less. Nodes at home
+ * are marked, too: a mark is cheaper to find than a home. */
+static bool is_new(const struct solver *solver, int32_t *marks, int32_t node,
+                   int32_t mark)
+{
+    if (marks[node] >= mark)
         return false;
-    *known = mark;
-    return true;
+    marks[node] = mark;
+    return home_of(solver, node) != solver->comm->rank;
 }
 
 void routes_renew(struct solver *solver)
@@ -164,14 +169,14 @@ void routes_renew(struct solver *solver)
     const struct model *model = &solver->model;
     const struct link_list *links = &solver->links;
     int64_t count = 0, all = model->forest->count + solver->memory.clusters;
-    int32_t *wanted = alloc_array((size_t)all, sizeof *wanted);
+    int32_t *wanted = alloc_array((size_t)all, sizeof *wanted), *marks = marks_of(solver);
     for (int64_t i = 0; i < links->seen && solver->comm->size > 1; i++) {
         int32_t ends[METHOD_ENDS_MAX] = {links->items[i].p, links->items[i].q};
         int number = 2;
         if (model->method.ends)
             number = model->method.ends(model, &links->items[i], ends);
         for (int k = 0; k < number; k++)
-            if (is_new(solver, ends[k], ALWAYS))
+            if (is_new(solver, marks, ends[k], ALWAYS))
                 wanted[count++] = ends[k];
     }
     struct route asked = route_to_homes(solver, wanted, count);
@@ -212,7 +217,7 @@ void solver_learn(struct solver *solver, const struct link_list *list, bool deep
         return;
     size_t room = (deep ? EACH : 2) * (size_t)list->count;
     int32_t *nodes = alloc_array(room, sizeof *nodes);
-    int32_t *wanted = alloc_array(room, sizeof *wanted);
+    int32_t *wanted = alloc_array(room, sizeof *wanted), *marks = marks_of(solver);
     int64_t count = 0, unknown = 0;
     for (int64_t i = 0; i < 2 * list->count; i++) {
         int32_t end = i % 2 ? list->items[i / 2].p : list->items[i / 2].q;
@@ -220,7 +225,7 @@ void solver_learn(struct solver *solver, const struct link_list *list, bool deep
     }
     for (int64_t i = 0; i < count; i++) {
         int32_t node = origin_of(solver, nodes[i]);
-        if (is_new(solver, node, (int32_t)solver->turn.pass))
+        if (is_new(solver, marks, node, (int32_t)solver->turn.pass))
             wanted[unknown++] = node;
     }
     struct route asked = route_to_homes(solver, wanted, unknown);

@@ -58,8 +58,8 @@ struct routes {
     struct route originals; /* nodes at home here, by the ranks with proxies of them, in
                                the order there */
     int32_t *known;         /* [capacity] of clusters, last one first, and patches: the
-                               last pass whose radiosity is known here, of a node of
-                               another home; see mpi/scatter.c */
+                               last pass whose radiosity is known here; see
+                               mpi/scatter.c */
     int64_t capacity;
 };
 
