@@ -51,6 +51,10 @@ struct gathering {
 /* Lists the leaves, rank by rank. */
 static void list_leaves(struct gathering *g)
 {
+    size_t count = (size_t)g->mesh.count;
+    g->leaf = alloc_array(count, sizeof *g->leaf);
+    g->place = alloc_array(count, sizeof *g->place);
+    g->all = alloc_array(count, sizeof *g->all);
     for (int64_t i = 0; i < g->mesh.count; i++) {
         int32_t k = g->stages.place[i];
         g->leaf[k] = (int32_t)i;
@@ -116,14 +120,12 @@ static bool make_rows(struct gathering *g)
     final_gather_renew(g->gather);
     g->equation =
         equation_start(g->gather, mesh, totals_of(solver, BANDS * mesh->count));
-    g->leaf = alloc_array((size_t)mesh->count, sizeof *g->leaf);
-    g->place = alloc_array((size_t)mesh->count, sizeof *g->place);
-    g->all = alloc_array((size_t)mesh->count, sizeof *g->all);
     progress_begin(solver->progress, "gathering", -1, 0);
     g->stages = (struct stages){.solver = solver, .gather = g->gather,
                                 .act = equation_make_row, .context = &g->equation,
                                 .work = mesh->work, .count = mesh->count};
     stages_run(&g->stages);
+    final_gather_drop_cuts(g->gather);
     list_leaves(g);
     const struct gather_counts *counts = &g->gather->counts;
     int64_t sums[] = {stop_is_asked(), counts->rays, counts->segments, counts->exact,
@@ -346,6 +348,7 @@ static void end(struct gathering *g)
 enum finish solver_finish(struct solver *solver, struct vote *vote)
 {
     struct gathering g = {.solver = solver};
+    conjugate_free(solver->beyond->descent); /* of the links, which are solved */
     account_begin(&solver->account, PHASE_FINAL_GATHER);
     account_begin(&solver->account, PHASE_ROWS);
     bool done = solver_make_mesh(solver, vote->links, &g.mesh) && make_rows(&g);

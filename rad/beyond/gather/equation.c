@@ -48,16 +48,12 @@ static const double DARK = 1e-3;
 struct equation equation_start(struct final_gather *gather,
                                const struct gather_mesh *mesh, struct totals totals)
 {
-    const struct forest *forest = gather->model->forest;
     size_t count = (size_t)mesh->count;
     struct equation e = {.gather = gather, .mesh = mesh, .totals = totals};
     e.number = alloc_array(count, sizeof *e.number);
     e.space = alloc_array(count, sizeof *e.space);
     e.areas = alloc_array(count, sizeof *e.areas);
-    e.near = alloc_array(count, sizeof *e.near);
     e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
-    e.radiosity = alloc_array((size_t)forest->count, sizeof *e.radiosity);
-    e.outside = alloc_array((size_t)forest->count, sizeof *e.outside);
     return e;
 }
 
@@ -98,6 +94,7 @@ void equation_number_near(struct equation *e)
     struct final_gather *gather = e->gather;
     struct gather_near *items = gather->near->items;
     int32_t *number = alloc_array((size_t)gather->model->forest->count, sizeof *number);
+    int64_t capacity = 0;
     for (int64_t i = 0; i < e->mesh->count; i++) {
         int32_t place = gather->place[e->mesh->leaves[i]];
         number[place] = -1;
@@ -105,6 +102,7 @@ void equation_number_near(struct equation *e)
             continue;
         number[place] = (int32_t)e->near_count;
         items[e->near_count] = items[place];
+        RESERVE(e->near, &capacity, e->near_count + 1);
         e->near[e->near_count++] = (struct too_near){-1, rgb_grey(1.0)};
     }
     for (int64_t i = 0; i < e->count; i++)
@@ -113,6 +111,7 @@ void equation_number_near(struct equation *e)
     for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
         if (gather->terms[k].near >= 0)
             gather->terms[k].near = number[gather->terms[k].near];
+    gather->near->items = alloc_resize(items, (size_t)e->near_count, sizeof *items);
     alloc_free(number);
 }
 
@@ -121,6 +120,8 @@ void equation_find_outside(struct equation *e, const int32_t *place,
 {
     const struct forest *forest = e->gather->model->forest;
     const int32_t *at = e->gather->place;
+    e->radiosity = alloc_array((size_t)forest->count, sizeof *e->radiosity);
+    e->outside = alloc_array((size_t)forest->count, sizeof *e->outside);
     for (int64_t k = 0; k < e->mesh->count; k++)
         e->outside[place[k]] = shares[k].band[0];
     for (int64_t first = forest->count - 4; first >= forest->root_count; first -= 4)

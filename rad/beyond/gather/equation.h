@@ -30,8 +30,9 @@ struct equation {
     struct too_near *near;  /* [near_count] of all ranks, once numbered */
     int64_t near_count;
     int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
-    struct rgb *radiosity;  /* by place: as rows see them */
-    double *outside;        /* by place: shares of patches outside of things, 1 */
+    struct rgb *radiosity;  /* by place: as rows see them; NULL: rows are being made */
+    double *outside;        /* by place: shares of patches outside of things, 1; NULL:
+                               rows are being made */
 };
 
 /* Borrows gather and mesh, which has leaves, and rays for each. `totals`: how ranks
@@ -88,7 +89,7 @@ void equation_make_row(void *equation, int64_t number);
 void equation_number_near(struct equation *e);
 
 /* Finds the shares of patches outside of things, by those of all leaves, `shares[k]` of
- * the leaf at place[k], in the first band. */
+ * the leaf at place[k], in the first band; makes room for e->radiosity. */
 void equation_find_outside(struct equation *e, const int32_t *place,
                            const struct rgb *shares);
 

@@ -121,13 +121,20 @@ static void drop_patches(struct final_gather *gather)
     alloc_free(gather->place);
 }
 
-static void aims_destroy(struct gather_aims *aims)
+void final_gather_drop_cuts(struct final_gather *gather)
 {
     for (int kind = 0; kind < SENDER_KINDS; kind++) {
-        cuts_destroy(aims->cuts[kind]);
-        senders_destroy(aims->senders[kind]);
+        cuts_destroy(gather->aims->cuts[kind]);
+        gather->aims->cuts[kind] = NULL;
     }
-    regions_destroy(aims->regions);
+    regions_destroy(gather->aims->regions);
+    gather->aims->regions = NULL;
+}
+
+static void aims_destroy(struct gather_aims *aims)
+{
+    for (int kind = 0; kind < SENDER_KINDS; kind++)
+        senders_destroy(aims->senders[kind]);
     panes_destroy(aims->panes);
     alloc_free(aims->offers);
     alloc_free(aims->shots);
@@ -139,6 +146,7 @@ void final_gather_destroy(struct final_gather *gather)
     if (!gather)
         return;
     drop_patches(gather);
+    final_gather_drop_cuts(gather);
     aims_destroy(gather->aims);
     view_destroy(gather->view);
     alloc_free(gather->lit);
@@ -210,8 +218,7 @@ void final_gather_renew(struct final_gather *gather)
 
 void final_gather_forget(struct final_gather *gather)
 {
-    regions_destroy(gather->aims->regions);
-    gather->aims->regions = NULL;
+    final_gather_drop_cuts(gather);
     gather->cut = NULL;
     gather->rays =
         rays_for(gather->rays_asked, forest_count(gather->model->forest).leaves);

@@ -148,8 +148,12 @@ void final_gather_destroy(struct final_gather *gather); /* NULL: none */
  * the forest and its leaves. To be called when these have changed. Drops all rows. */
 void final_gather_renew(struct final_gather *gather);
 
-/* The same, and forgets all rows, leaves too near, and what looks have told, also when
- * lamps have changed: the gather is as a stored solution has it. */
+/* Drops the cuts and what looks have told: no row, look or pixel can be made before
+ * final_gather_forget(). */
+void final_gather_drop_cuts(struct final_gather *gather);
+
+/* Does as final_gather_renew(), and forgets all rows, leaves too near, and what looks have
+ * told, also when lamps have changed: the gather is as a stored solution has it. */
 void final_gather_forget(struct final_gather *gather);
 
 /* The work of this rank so far, proofs included, in tests. */
