@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 
 #include "geom/alloc.h"
 
@@ -37,45 +38,78 @@ static int shots_of(double worth, int mean)
     return worth < 0.0 ? FEWEST : shots_of_power(power_of(worth), mean);
 }
 
-/* What a group shares: the worth of the mean number of shots is between two bounds. */
+/* What a group shares. */
 struct sharing {
-    double low, high;
-    int64_t shots; /* of all, if the middle is worth the mean */
-    int64_t most;  /* that they may be */
+    double *worth; /* [count] of its leaves that get more than the fewest, rising */
+    int64_t count;
+    double mean;   /* worth of a leaf that gets the mean number of shots */
 };
 
-static double middle_of(const struct sharing *share)
+/* Rising. */
+static int compare_worths(const void *left, const void *right)
 {
-    return 0.5 * (share->low + share->high);
+    const double *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+/* Returns the shots of all if those of a leaf of worth `middle` are the mean number. The
+ * power of two rises with the worth. */
+static int64_t shots_of_all(const struct sharing *share, double middle, int mean)
+{
+    int64_t shots = 0, first = 0;
+    for (int power = -MOST_HALVED; power <= MOST_DOUBLED; power++) {
+        int64_t low = first, high = share->count;
+        while (low < high) {
+            int64_t at = low + (high - low) / 2;
+            if (power_of(share->worth[at] / middle) <= power)
+                low = at + 1;
+            else
+                high = at;
+        }
+        shots += (low - first) * shots_of_power(power, mean);
+        first = low;
+    }
+    return shots;
+}
+
+/* Finds the least mean with no more shots than the mean number for each. */
+static void find_mean(struct sharing *share, int mean)
+{
+    qsort(share->worth, (size_t)share->count, sizeof *share->worth, compare_worths);
+    double low = 0.0, high = share->count > 0 ? share->worth[share->count - 1] : 0.0;
+    for (int step = 0; step < STEPS && high > 0.0; step++) {
+        double middle = 0.5 * (low + high);
+        bool more = shots_of_all(share, middle, mean) > share->count * mean;
+        *(more ? &low : &high) = middle;
+    }
+    share->mean = high;
 }
 
 void shots_share(const double *worth, const int32_t *group, int64_t count, int32_t groups,
                  int mean, int *shots)
 {
     struct sharing *shares = alloc_array((size_t)groups, sizeof *shares);
+    double *sorted = alloc_array((size_t)count, sizeof *sorted);
+    for (int64_t k = 0; k < count; k++)
+        shares[group[k]].count += !(worth[k] < 0.0);
+    double *next = sorted;
+    for (int32_t g = 0; g < groups; g++) {
+        shares[g].worth = next;
+        next += shares[g].count;
+        shares[g].count = 0;
+    }
     for (int64_t k = 0; k < count; k++) {
         struct sharing *share = &shares[group[k]];
-        if (worth[k] < 0.0) /* the fewest, beside the others */
-            continue;
-        share->high = fmax(share->high, worth[k]);
-        share->most += mean;
+        if (!(worth[k] < 0.0)) /* the others get the fewest */
+            share->worth[share->count++] = worth[k];
     }
-    for (int step = 0; step < STEPS; step++) {
-        for (int64_t k = 0; k < count; k++) {
-            struct sharing *share = &shares[group[k]];
-            if (!(worth[k] < 0.0) && share->high > 0.0)
-                share->shots += shots_of(worth[k] / middle_of(share), mean);
-        }
-        for (int32_t g = 0; g < groups; g++) {
-            bool more = shares[g].shots > shares[g].most;
-            *(more ? &shares[g].low : &shares[g].high) = middle_of(&shares[g]);
-            shares[g].shots = 0;
-        }
-    }
+    for (int32_t g = 0; g < groups; g++)
+        find_mean(&shares[g], mean);
     for (int64_t k = 0; k < count; k++) {
-        double high = shares[group[k]].high;
-        shots[k] = shots_of(high > 0.0 ? worth[k] / high : 2.0 * worth[k] + 1.0, mean);
+        double own = shares[group[k]].mean;
+        shots[k] = shots_of(own > 0.0 ? worth[k] / own : 2.0 * worth[k] + 1.0, mean);
     }
+    alloc_free(sorted);
     alloc_free(shares);
 }
 
