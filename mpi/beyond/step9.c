@@ -101,7 +101,6 @@ static void share_met(struct gathering *g)
     comm_add(g->solver->comm, e->fired, 2 * lit_count(&g->solver->model));
     comm_add(g->solver->comm, &crossed, 1);
     add_up(g, &g->gather->near->items->area, EACH * patches);
-    equation_number_near(e);
     for (int64_t i = 0; i < e->count; i++)
         own_values(g)[i].band[0] = (double)equation_cover(e, i)->outside;
     share_values(g);
@@ -157,7 +156,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
 /* Collective. Finds how bright far receivers see leaves too near. */
 static void find_shown(struct gathering *g, const struct rgb *b)
 {
-    size_t count = BANDS * (size_t)g->equation.near_count;
+    size_t count = BANDS * (size_t)g->solver->model.forest->count;
     int64_t *watts = alloc_array(count, sizeof *watts);
     equation_show_means(&g->equation, b, own_values(g));
     show(g);

@@ -53,6 +53,7 @@ struct equation equation_start(struct final_gather *gather,
     e.number = alloc_array(count, sizeof *e.number);
     e.space = alloc_array(count, sizeof *e.space);
     e.areas = alloc_array(count, sizeof *e.areas);
+    e.shown = alloc_array(count, sizeof *e.shown);
     e.fired = alloc_array(2 * (size_t)lit_count(gather->model), sizeof *e.fired);
     return e;
 }
@@ -62,7 +63,7 @@ void equation_free(struct equation *e)
     alloc_free(e->number);
     alloc_free(e->space);
     alloc_free(e->areas);
-    alloc_free(e->near);
+    alloc_free(e->shown);
     alloc_free(e->fired);
     alloc_free(e->radiosity);
     alloc_free(e->outside);
@@ -85,34 +86,9 @@ void equation_make_row(void *equation, int64_t number)
     fired[0] += counts->rays;
     fired[1] += counts->escaped;
     e->number[leaf] = number;
+    e->shown[leaf] = rgb_grey(1.0);
     e->space[leaf] = space;
     e->areas[leaf] = forest_area(model->forest, patch);
-}
-
-void equation_number_near(struct equation *e)
-{
-    struct final_gather *gather = e->gather;
-    struct gather_near *items = gather->near->items;
-    int32_t *number = alloc_array((size_t)gather->model->forest->count, sizeof *number);
-    int64_t capacity = 0;
-    for (int64_t i = 0; i < e->mesh->count; i++) {
-        int32_t place = gather->place[e->mesh->leaves[i]];
-        number[place] = -1;
-        if (items[place].area == 0)
-            continue;
-        number[place] = (int32_t)e->near_count;
-        items[e->near_count] = items[place];
-        RESERVE(e->near, &capacity, e->near_count + 1);
-        e->near[e->near_count++] = (struct too_near){-1, rgb_grey(1.0)};
-    }
-    for (int64_t i = 0; i < e->count; i++)
-        if (number[equation_place(e, i)] >= 0)
-            e->near[number[equation_place(e, i)]].leaf = i;
-    for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
-        if (gather->terms[k].near >= 0)
-            gather->terms[k].near = number[gather->terms[k].near];
-    gather->near->items = alloc_resize(items, (size_t)e->near_count, sizeof *items);
-    alloc_free(number);
 }
 
 void equation_find_outside(struct equation *e, const int32_t *place,
@@ -185,17 +161,14 @@ void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
             double own = lamps ? emission.band[c] : 0.0;
             seen[i].band[c] = own + (b[i].band[c] - own) / share;
         }
+        seen[i] = rgb_times(seen[i], e->shown[i]);
     }
-    for (int64_t k = 0; k < e->near_count; k++)
-        if (e->near[k].leaf >= 0)
-            seen[e->near[k].leaf] =
-                rgb_times(seen[e->near[k].leaf], e->near[k].shown);
 }
 
 void equation_show_means(struct equation *e, const struct rgb *b, struct rgb *seen)
 {
-    for (int64_t k = 0; k < e->near_count; k++)
-        e->near[k].shown = rgb_grey(1.0);
+    for (int64_t i = 0; i < e->count; i++)
+        e->shown[i] = rgb_grey(1.0);
     equation_show(e, b, true, seen);
 }
 
@@ -217,22 +190,20 @@ void equation_add_near(const struct equation *e, int64_t *watts)
 void equation_set_shown(struct equation *e, const int64_t *watts)
 {
     const struct gather_nears *nears = e->gather->near;
-    for (int64_t k = 0; k < e->near_count; k++) {
-        int64_t i = e->near[k].leaf;
-        if (i < 0)
-            continue;
-        const struct gather_near *near = &nears->items[k];
-        const struct rgb *own = &e->radiosity[equation_place(e, i)];
+    for (int64_t i = 0; i < e->count; i++) {
+        int32_t place = equation_place(e, i);
+        const struct gather_near *near = &nears->items[place];
+        const struct rgb *own = &e->radiosity[place];
         const struct cover *cover = equation_cover(e, i);
         double area = e->areas[i] * fmax(LEAST_OUTSIDE, (double)cover->outside);
         double part = (double)near->area * nears->unit_area / area;
         double unit = nears->unit_watts / (area * fmax(1.0, part));
         double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
         for (int c = 0; c < BANDS; c++) {
-            double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
-            met = fmax(0.0, met); /* slopes may bring it below */
+            double met = (double)(watts[BANDS * place + c] + near->watts[c]) * unit;
+            met = fmax(0.0, met); /* n L; slopes may bring it below */
             double excess = own->band[c] > 0.0 ? n - met / own->band[c] : 0.0;
-            e->near[k].shown.band[c] = fmax(0.0, 1.0 + damping * excess);
+            e->shown[i].band[c] = fmax(0.0, 1.0 + damping * excess);
         }
     }
 }

@@ -13,12 +13,6 @@
 #include "rad/beyond/gather/rows.h"
 #include "rad/beyond/total.h"
 
-/* A leaf too near for some. */
-struct too_near {
-    int64_t leaf;     /* -1: of another rank */
-    struct rgb shown; /* B as seen from afar over its mean, 1 */
-};
-
 struct equation {
     struct final_gather *gather;    /* with the rows of this rank; borrowed */
     const struct gather_mesh *mesh; /* borrowed */
@@ -27,8 +21,8 @@ struct equation {
     int64_t *number;        /* [count] in the mesh */
     int32_t *space;         /* [count] */
     double *areas;          /* [count] square scene units */
-    struct too_near *near;  /* [near_count] of all ranks, once numbered */
-    int64_t near_count;
+    struct rgb *shown;      /* [count] B as seen from afar over its mean, 1: of leaves too
+                               near for some */
     int64_t *fired;         /* [2 * lit_count()] rays of each space, and those escaping */
     struct rgb *radiosity;  /* by place: as rows see them; NULL: rows are being made */
     double *outside;        /* by place: shares of patches outside of things, 1; NULL:
@@ -84,10 +78,6 @@ double equation_shining_area(const struct equation *e, int64_t leaf);
 /* Makes the row of a leaf of the mesh, and counts its rays. */
 void equation_make_row(void *equation, int64_t number);
 
-/* Numbers leaves too near, in the order of all. Pre: the items of gather->near are summed
- * over ranks. */
-void equation_number_near(struct equation *e);
-
 /* Finds the shares of patches outside of things, by those of all leaves, `shares[k]` of
  * the leaf at place[k], in the first band; makes room for e->radiosity. */
 void equation_find_outside(struct equation *e, const int32_t *place,
@@ -105,8 +95,8 @@ void equation_show(const struct equation *e, const struct rgb *b, bool lamps,
 
 /* Finds how bright far receivers see leaves too near, in three steps: all leaves are
  * shown by their means; rows add the light that they bring to leaves too near to `watts`,
- * [BANDS * near_count], in gather->near->unit_watts; sums over all rows set the factors
- * of own leaves. */
+ * [BANDS * forest->count] by place, in gather->near->unit_watts; sums over all rows, and
+ * of the items of gather->near, set the factors of own leaves. */
 void equation_show_means(struct equation *e, const struct rgb *b, struct rgb *seen);
 void equation_add_near(const struct equation *e, int64_t *watts);
 void equation_set_shown(struct equation *e, const int64_t *watts);

@@ -56,7 +56,7 @@ struct gather_leaf {
  * rays. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
-                                  all ranks, once these are added up, by number */
+                                  all ranks, once these are added up */
     struct gather_path *paths; /* [path_count] of the row at hand */
     int64_t path_count, path_capacity;
     double unit_area;          /* square scene units */

@@ -133,8 +133,7 @@ static void add_paths(struct gather_nears *near, const struct receiver *r, doubl
     for (int64_t i = 0; i < near->path_count; i++) {
         const struct gather_path *path = &near->paths[i];
         struct gather_near *item = &near->items[path->place];
-        int64_t units = gather_units(area / r->rays, near->unit_area);
-        item->area += units > 0 ? units : 1; /* above 0: the leaf gets a number */
+        item->area += gather_units(area / r->rays, near->unit_area);
         for (int c = 0; c < BANDS; c++)
             item->watts[c] += gather_units(area * path->light.band[c], near->unit_watts);
     }

@@ -12,8 +12,7 @@
  * in all arrays of the final gather. */
 struct gather_term {
     int32_t place; /* of the patch */
-    int32_t near;  /* the leaf too near met first by the ray: its place, or, once these
-                      are numbered, its number; -1: none */
+    int32_t near;  /* the place of the leaf too near met first by the ray; -1: none */
     float weight[BANDS];
 };
 

@@ -33,7 +33,6 @@ static double absorbed_part(struct scene *scene, double first, double *off)
         place[i] = equation_place(&e, i);
         h[i].band[0] = (double)equation_cover(&e, i)->outside;
     }
-    equation_number_near(&e);
     equation_find_outside(&e, place, h);
     struct light_balance balance = balance_start(&e, gather->counts.crossed);
     for (int k = 0; k < REFLECTIONS; k++) {

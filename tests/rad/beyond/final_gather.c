@@ -67,29 +67,6 @@ static void test_open(void)
     trial_free(&g);
 }
 
-/* A speck close above a floor meets it too near. Leaves met so are numbered if the area
- * of those that have met them is a unit, 2^-50 of all, or more: it is one, however small
- * the speck. */
-static void test_speck(double size)
-{
-    struct soup soup = {0};
-    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&soup, point(0, 0, size / 10), point(0, size, 0), point(size, 0, 0), 1);
-    double part = size / 10; /* of the floor is hidden, so there are rays */
-    soup_add_quad(&soup, point(0, 0, part / 2), point(part, 0, 0), point(0, part, 0), 1);
-    paint(&soup, 0.5, 1.0);
-    struct trial g = gather_scene(&soup, "--max-level 0", 64);
-    int64_t near = 0, lost = 0;
-    for (int64_t k = 0; k < final_gather_terms(g.gather); k++) {
-        int32_t leaf = g.gather->terms[k].near;
-        near += leaf >= 0;
-        lost += leaf >= 0 && g.gather->near->items[leaf].area == 0;
-    }
-    tap_ok(near > 0 && lost == 0, "a speck of %g: %lld terms by way of leaves "
-           "too near, %lld without a unit", size, (long long)near, (long long)lost);
-    trial_free(&g);
-}
-
 /* A picture in the plane of a wall, of a quarter of its area. */
 static void test_covered(void)
 {
@@ -222,8 +199,6 @@ int main(int argc, char **argv)
     test_furnished();
     test_most_rays();
     test_open();
-    test_speck(1e-4);
-    test_speck(1e-7);
     test_covered();
     test_column(1.0, 0.96);
     test_column(0.9, 1.0);
