@@ -15,9 +15,11 @@
 #   make front           docs/front.csv, a table in docs/accuracy.md and, with gnuplot,
 #                        docs/front.svg: seconds against the error of pictures, by
 #                        settings: the defaults are to be on the front
-#   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million
-#                        triangles
+#   make growth          docs/growth.csv, docs/growth.svg, a table in docs/scaling.md:
+#                        rooms of 6,348 to a million triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
+#                        in docs/scaling.md what ranks repeat, by instructions, and
+#                        their memory
 #                        docs/tables.md, docs/fig3.svg: Tables 1 and 2 and Fig. 3 of the
 #                        paper, by processor seconds
 #   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
@@ -241,6 +243,7 @@ growth: $(PHR) build/room
 # About eight minutes on two cores; ROOM=1000000 takes 14.
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/repeated.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
 pages: ablation stability
@@ -381,7 +384,7 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room pathtracer bench errors chart front growth scaling check \
-    pages ablation numbers stability docs course exercise film answers oracle \
+.PHONY: all demo tests room pathtracer bench errors chart front growth scaling \
+    check pages ablation numbers stability docs course exercise film answers oracle \
     panel check-long prove corpus cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE

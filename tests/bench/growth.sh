@@ -1,12 +1,16 @@
 # make growth: rooms of 6,348 to a million triangles, from reading to a picture, on two
-# ranks, at epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with
-# gnuplot, docs/growth.svg; prints by which power of the triangles links and work grow.
-# Sizes are those that the generator is asked for. Memory is the sum of the ranks' peaks;
-# shared memory counts for each.
+# ranks, at epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv,
+# docs/growth.svg, and in docs/scaling.md the table and by which power of the triangles
+# links and work grow. Memory is the sum of the ranks' peaks; shared memory counts for
+# each. Seconds are of the clock: the machine should have two idle cores.
+# Knobs: SIZES and FINE_SIZES, of rooms, as the generator is asked for; CSV, FIGURE and
+# OUT, the files.
 set -eu
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OUT:=docs/scaling.md}"
+: "${CSV:=docs/growth.csv}" "${FIGURE:=docs/growth.svg}"
 : "${SIZES:=6350 18510 31933 100000 300000 1000000}" \
     "${FINE_SIZES:=6350 18510 31933 100000}"
+. tests/bench/renew.sh
 work=$BUILD/growth
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
@@ -33,11 +37,11 @@ grow() {
         "$((first + $(all_of "$json" splitting)))," \
         "$(number_of "$json" peak_rss_bytes_sum),$(most_of "$json" tree)," \
         "$(most_of "$json" refinement),$(most_of "$json" total)" |
-        tr -d ' ' | tee -a docs/growth.csv
+        tr -d ' ' | tee -a "$CSV"
 }
 
 echo "scene,epsilon,triangles,patches,links,rays,tests,work,bytes,tree,refinement,total" \
-    >docs/growth.csv
+    >"$CSV"
 for size in $SIZES; do
     build/room "$size" 1 >"$work/room$size.obj"
     grow "$size" 1e-3
@@ -45,20 +49,32 @@ done
 for size in $FINE_SIZES; do
     grow "$size" 1e-4
 done
-# From the smallest to the largest room: log (y / y0) / log (k / k0).
-awk -F, '$1 == "room" {
-    if (!($2 in k0)) { k0[$2] = $3; links0[$2] = $5; work0[$2] = $8 }
-    k[$2] = $3; links[$2] = $5; work[$2] = $8
-} END {
-    for (e in k) if (k[e] > k0[e]) {
-        span = log(k[e] / k0[e])
-        printf "epsilon %s, %d to %d triangles: ", e, k0[e], k[e]
-        printf "links grow as k^%.2f, refinement work as k^%.2f\n",
-               log(links[e] / links0[e]) / span, log(work[e] / work0[e]) / span
-    }
-}' docs/growth.csv
-if command -v gnuplot >/dev/null; then
-    gnuplot tests/bench/growth.gp
-else
-    echo "there is no gnuplot: no picture" >&2
-fi
+{
+    # From the smallest to the largest room: log (y / y0) / log (k / k0).
+    awk -F, 'NR > 1 {
+        if (!($2 in k0)) { k0[$2] = $3; links0[$2] = $5; work0[$2] = $8; order[++n] = $2 }
+        k[$2] = $3; links[$2] = $5; work[$2] = $8
+    } END {
+        for (i = 1; i <= n; i++) {
+            e = order[i]
+            if (k[e] == k0[e]) continue
+            span = log(k[e] / k0[e])
+            printf "\nAt epsilon %s, from %d to %d triangles k, links grow as k^%.2f,\n",
+                   e, k0[e], k[e], log(links[e] / links0[e]) / span
+            printf "the work of refinement as k^%.2f.\n", log(work[e] / work0[e]) / span
+        }
+    }' "$CSV"
+    echo
+    echo "| epsilon | triangles | links | rays | memory | tree but for its rays |" \
+        "refinement | all |"
+    echo "|---|---|---|---|---|---|---|---|"
+    awk -F, 'NR > 1 {
+        printf "| %s | %d | %d | %.2g M | %.2g GB | %.2g s | %.2g s | %.2g s |\n", $2, $3,
+               $5, $6 / 1e6, $9 / 1e9, $10, $11, $12
+    }' "$CSV"
+    echo
+} >"$work/made"
+renew "$OUT" "![Links against triangles]" "## Balance" <"$work/made"
+awk -F, 'NR > 1 { print "epsilon_" $2, $3, $5 }' "$CSV" |
+    awk -v title="Links of rooms" -v xlabel=triangles -v ylabel=links -v logx=1 \
+        -v logy=1 -f docs/course/chart.awk >"$FIGURE"
