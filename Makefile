@@ -20,8 +20,8 @@
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
 #                        in docs/scaling.md what ranks repeat, by instructions, and
 #                        their memory
-#                        docs/tables.md, docs/fig3.svg: Tables 1 and 2 and Fig. 3 of the
-#                        paper, by processor seconds
+#   make tables          docs/tables.md, docs/fig3.svg: Tables 1 and 2 and Fig. 3 of the
+#                        paper, by counts and processor seconds
 #   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
 #                        breaks radiosity programs (make ablation, make stability)
 #   make numbers         docs/numbers.md: half and twice of each tuned number
@@ -244,6 +244,9 @@ growth: $(PHR) build/room
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/repeated.sh
+
+# About ten minutes on two cores, three of them for linking all pairs.
+tables: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
 pages: ablation stability
@@ -262,7 +265,7 @@ stability: $(PHR) $(JUDGES:%=$(BUILD)/%)
 
 docs:
 	@echo "All pages take three hours and a half on two cores."
-	@for page in chart front growth scaling pages numbers oracle course; do \
+	@for page in chart front growth scaling tables pages numbers oracle course; do \
 	    echo "$$(date +%H:%M) make $$page"; $(MAKE) $$page || exit 1; done
 
 # The programs of docs/course/.
@@ -384,7 +387,7 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room pathtracer bench errors chart front growth scaling \
+.PHONY: all demo tests room pathtracer bench errors chart front growth scaling tables \
     check pages ablation numbers stability docs course exercise film answers oracle \
     panel check-long prove corpus cycles golden pace portability fuzz install \
         install-lib uninstall clean FORCE

@@ -55,7 +55,7 @@ NF == 3 && $2 ~ /^[-+.e0-9]+$/ && $3 ~ /^[-+.e0-9]+$/ {
 }
 
 END {
-    split("#0060a8 #d04020 #208040 #805090 #a08000", colours, " ")
+    split("#0060a8 #d04020 #208040 #805090 #a08000 #606060", colours, " ")
     step_x = logx ? 1 : tick_step(high_x - low_x)
     step_y = logy ? 1 : tick_step(high_y - low_y)
     low_y = step_y * int(low_y / step_y - (low_y < 0))

@@ -1,6 +1,9 @@
-# Runs on one rank, each behind a line with its processor seconds, and runs on several,
-# balance by balance: phr's Tables 1 and 2 for one network, and to the file `figure` lines
-# "series ranks speed-up"; see tables.sh.
+# Runs of some rooms, by their reports: SIZE.one.TURN on one rank and SIZE.two.TURN on
+# two, each behind a line with its processor seconds; SIZE.one.linking, that made the
+# links; SIZE.most.linking, that made them on many ranks, of the first room alone;
+# SIZE.loading.RANKS, that loads them and ends; SIZE.BALANCE.RANKS. Prints phr's Tables 1
+# and 2, and writes to the file `figure` lines "series ranks speed-up"; see tables.sh.
+# Variables are lists of words: rooms SIZE:EPSILON, turns, and `on`, numbers of ranks.
 
 function value(key,    text) { # the number behind "key":
     text = $0
@@ -8,23 +11,51 @@ function value(key,    text) { # the number behind "key":
     return text + 0
 }
 
+# Two digits, and no 0 before the point.
+function two(x,    places, text) {
+    if (x == 0)
+        return "0"
+    text = sprintf("%.1e", x)
+    places = 1 - substr(text, index(text, "e") + 1)
+    if (places < 0)
+        return sprintf("%.0f", int(x * 10 ^ places + 0.5) / 10 ^ places)
+    text = sprintf("%." places "f", x)
+    sub(/^0\./, ".", text)
+    return text
+}
+
+# 6348 as 6,348.
+function grouped(n,    text) {
+    text = sprintf("%d", n)
+    while (match(text, /[0-9][0-9][0-9][0-9]($|,)/))
+        text = substr(text, 1, RSTART) "," substr(text, RSTART + 1)
+    return text
+}
+
 BEGIN {
     BYTES_PER_LINK = 32
-    kinds = split("greedy none default", balance)
+    COPY = 2e-8 # s a link or a patch is packed or unpacked
+    TODAY = 2e-6; TODAY_BYTES = 1e10 # s a message, bytes a second
+    ETHERNET = 1e-4; ETHERNET_BYTES = 1e7
+    KINDS = split("test look light patch route", KIND)
+    COLUMNS = split("refinement idle migration gather push-pull scatter", COLUMN)
+    room_count = split(rooms, room)
+    turn_count = split(turns, turn)
+    rows = split(on, ranks)
 }
-FNR == 1 {
-    n = split(FILENAME, part, ".")
-    run = part[n - 1] == "one" ? "one" : part[n - 1] " " part[n]
-    turn += run == "one"
-    if (run != "one" && part[n - 1] == "greedy") ranks[++rows] = part[n]
+
+FNR == 1 { # room and run: "SIZE one", "SIZE greedy 8"
+    n = split(FILENAME, part, /[\/.]/)
+    run = part[n - 2] " " part[n - 1]
+    timed = run " " part[n]
+    if (part[n - 1] !~ /^(one|two)$/ || part[n] == "linking") run = timed
 }
-run == "one" && /^processor/ { processor = $2 }
-run == "one" && /"min".*"mean".*"max"/ && !/closure/ {
+/^processor/ { processor = $2 }
+/"min".*"mean".*"max"/ && !/closure/ {
     split($0, part, "\"")
-    now = value("max")
-    if (part[2] == "total") share = processor / now # the first phase
-    now *= share
-    if (turn == 1 || now < seconds[part[2]]) seconds[part[2]] = now
+    if (part[2] == "total") share = processor / value("max") # the first phase
+    if (run ~ /two$/) share = 1
+    seconds[timed, part[2]] = share * value("max")
 }
 /"phases"/ {
     split($0, part, "\"")
@@ -33,96 +64,187 @@ run == "one" && /"min".*"mean".*"max"/ && !/closure/ {
     sent[run, part[2]] = value("bytes")
 }
 /"messages_with"/ {
-    with_flux[run] = value("gather")
-    with_light[run] = value("scatter")
+    messages[run, "gather"] = value("gather")
+    messages[run, "scatter"] = value("scatter") + value("whole")
 }
-/"(triangles|links|messages)": [0-9]*,$/ {
+/"bytes": {"migration"/ { moved[run] = value("migration") }
+/"(triangles|links|exchanges|messages)": [0-9]*,$/ {
     split($0, part, "\"")
     count[run, part[2]] = value(part[2])
 }
-/"bytes": {"migration"/ { moved[run] = value("migration") }
 
-# Fills the columns of a run on P ranks.
-function fill(run, p,    k, gather, scatter) {
-    gather = with_flux[run] * message
-    scatter = with_light[run] * message
-    column["refinement"] = (all[run, "splitting"] * test + all[run, "looks"] * look) / p
-    column["idle"] = slowest[run, "splitting"] * test + slowest[run, "looks"] * look - \
-                     column["refinement"]
-    column["migration"] = count[run, "messages"] * message - gather - scatter + \
-                          sent[run, "splitting"] / bandwidth
-    column["gather"] = gather + sent[run, "transfer"] / bandwidth
-    column["push-pull"] = slowest[run, "own"] * own
-    column["scatter"] = scatter + sent[run, "own"] / bandwidth
-    column["light"] = slowest[run, "transfer"] * transfer
-    column["alike"] = alike
-    total = 0
-    for (k = 1; k <= columns; k++) total += column[name[k]]
-    linking = slowest[run, "linking"] * link_test + \
-              (moved[run] - BYTES_PER_LINK * links_sent[run]) / p / bandwidth
-    splitting = slowest[run, "splitting"] * test
+# The price of a kind of work in a turn, s.
+function price_of(size, kind, t,    one) {
+    one = size " one"
+    if (kind == "look") return seconds[one " " t, "looks"] / all[one, "looks"]
+    if (kind == "light") return seconds[one " " t, "solve"] / all[one, "transfer"]
+    if (kind == "patch") return seconds[one " " t, "push_pull"] / all[one, "own"]
+    if (kind == "route")
+        return seconds[size " two " t, "routes"] / slowest[size " two", "looks"]
+    return (seconds[one " " t, "refinement"] - seconds[one " " t, "looks"] - \
+            seconds[one " " t, "prepare"]) / all[one, "splitting"]
 }
 
-# Links that moved before levels: the lists "sent" of "balance".
-/"sent": \[/ {
-    text = $0
-    sub(/.*"sent": \[/, "", text)
-    sub(/\].*/, "", text)
-    k = split(text, part, ", ")
-    for (i = 1; i <= k; i++) links_sent[run] += part[i]
+# The median of x[1], ..., x[n], which are sorted; `least` and `most` are the ends.
+function median_of(x, n,    i, k, now) {
+    for (i = 2; i <= n; i++) {
+        now = x[i]
+        for (k = i - 1; k >= 1 && x[k] > now; k--) x[k + 1] = x[k]
+        x[k + 1] = now
+    }
+    least = x[1]
+    most = x[n]
+    return (x[int((n + 1) / 2)] + x[int(n / 2) + 1]) / 2
+}
+
+# The seconds of work of Algorithm 1 and light, by the prices of a turn.
+function work(run, size, t, of,    s) {
+    s = of[run, "splitting"] * price[size, "test", t]
+    s += of[run, "looks"] * price[size, "look", t]
+    return s + of[run, "transfer"] * price[size, "light", t]
+}
+
+# Messages but those of steps 5 and 7.
+function other_messages(run) {
+    return count[run, "messages"] - messages[run, "gather"] - messages[run, "scatter"]
+}
+
+# Fills `column` and `linking` with the seconds of a run on P ranks, by the prices of a
+# turn and of a network. Returns the sum of the columns.
+function fill(size, balance, p, t, message, bandwidth,
+              run, loaded, one, links, copies, k, sum) {
+    run = size " " (p == 1 ? "one" : balance " " p)
+    loaded = size " loading " p
+    one = size " one linking"
+    copies = COPY * slowest[run, "patches"] / 2
+    column["refinement"] = work(run, size, t, all) / p
+    column["idle"] = work(run, size, t, slowest) - column["refinement"]
+    links = (moved[run] - moved[loaded]) / BYTES_PER_LINK / p
+    column["migration"] = p == 1 ? 0 : links * (2 * COPY + BYTES_PER_LINK / bandwidth) + \
+        (other_messages(run) - other_messages(loaded)) * message
+    column["gather"] = copies + seconds[size " one " t, "gather"] + \
+        messages[run, "gather"] * message + sent[run, "transfer"] / bandwidth
+    column["push-pull"] = slowest[run, "own"] * price[size, "patch", t]
+    column["scatter"] = copies + seconds[size " one " t, "scatter"] + \
+        (p > 1) * slowest[run, "looks"] * price[size, "route", t] + \
+        messages[run, "scatter"] * message + sent[run, "own"] / bandwidth
+    linking = seconds[one, "linking"] / p
+    if (p > 1) {
+        links = moved[loaded] / BYTES_PER_LINK / p
+        linking = linking * uneven + links * (2 * COPY + BYTES_PER_LINK / bandwidth) + \
+            count[one, "exchanges"] * log(p) / log(2) * message
+    }
+    for (k = 1; k <= COLUMNS; k++) sum += column[COLUMN[k]]
+    return sum
+}
+
+function today(size, balance, p, t) {
+    return fill(size, balance, p, t, TODAY, TODAY_BYTES)
+}
+
+# The speed-up on P ranks.
+function gain(size, p, t, with_linking,    one) {
+    one = today(size, "greedy", 1, t) + with_linking * linking
+    return one / (today(size, "greedy", p, t) + with_linking * linking)
+}
+
+# "LEAST to MOST" of the speed-ups by the prices of single turns.
+function range(size, p, with_linking,    t, x) {
+    for (t = 1; t <= turn_count; t++) x[t] = gain(size, p, turn[t], with_linking)
+    median_of(x, turn_count)
+    return two(least) " to " two(most)
+}
+
+# The prices, and in turn "median" their medians.
+function print_prices(    i, k, t, x, text) {
+    printf "| room | epsilon | links at first | in the end |"
+    printf " a test, ns | a look | light over a link | a patch | a route |"
+    print " linking, once |\n|---|---|---|---|---|---|---|---|---|---|"
+    for (i = 1; i <= room_count; i++) {
+        text = ""
+        for (k = 1; k <= KINDS; k++) {
+            for (t = 1; t <= turn_count; t++)
+                x[t] = price[size[i], KIND[k], turn[t]] = price_of(size[i], KIND[k], turn[t])
+            price[size[i], KIND[k], "median"] = median_of(x, turn_count)
+            text = text sprintf(" %s (%s to %s) |", two(1e9 * median_of(x, turn_count)),
+                                two(1e9 * least), two(1e9 * most))
+        }
+        printf "| %s | %s | %s M | %s M |%s %s s |\n", grouped(triangles[i]), epsilon[i],
+               two(count[size[i] " one linking", "links"] / 1e6),
+               two(count[size[i] " one", "links"] / 1e6), text,
+               two(seconds[size[i] " one linking", "linking"])
+    }
+}
+
+# The medians of what has no price: steps 5 and 7 of one rank.
+function find_medians(    i, k, t, x, step) {
+    split("gather scatter", step)
+    for (i = 1; i <= room_count; i++)
+        for (k = 1; k <= 2; k++) {
+            for (t = 1; t <= turn_count; t++)
+                x[t] = seconds[size[i] " one " turn[t], step[k]]
+            seconds[size[i] " one median", step[k]] = median_of(x, turn_count)
+        }
+}
+
+function print_table_1(    i, r, p, now) {
+    printf "| ranks |"
+    for (i = 1; i <= room_count; i++)
+        printf " %s | | with linking |", grouped(triangles[i])
+    printf "\n|---|"
+    for (i = 1; i <= 3 * room_count; i++) printf "---|"
+    for (r = 1; r <= rows; r++) {
+        p = ranks[r]
+        printf "\n| %d |", p
+        for (i = 1; i <= room_count; i++) {
+            now = gain(size[i], p, "median", 0)
+            printf " %s | %s | %s |", two(today(size[i], "greedy", p, "median")), two(now),
+                   two(gain(size[i], p, "median", 1))
+            print "phr,_" grouped(triangles[i]), p, now >figure
+        }
+    }
+    printf "\n| %d, by turn |", p
+    for (i = 1; i <= room_count; i++)
+        printf " | %s | %s |", range(size[i], p, 0), range(size[i], p, 1)
+    printf "\n| %d, Ethernet |", p
+    for (i = 1; i <= room_count; i++) {
+        now = fill(size[i], "greedy", p, "median", ETHERNET, ETHERNET_BYTES)
+        printf " %s | %s | |", two(now), two(today(size[i], "greedy", 1, "median") / now)
+    }
+    printf "\n"
+}
+
+function print_table_2(    i, k, r, idle) {
+    printf "| room | ranks |"
+    for (k = 1; k <= COLUMNS; k++) printf " %s |", COLUMN[k]
+    print " idle, none |\n|---|---|---|---|---|---|---|---|---|"
+    for (i = 1; i <= room_count; i++)
+        for (r = 1; r <= rows; r++) {
+            today(size[i], "none", ranks[r], "median")
+            idle = column["idle"]
+            today(size[i], "greedy", ranks[r], "median")
+            printf "| %s | %d |", r == 1 ? grouped(triangles[i]) : "", ranks[r]
+            for (k = 1; k <= COLUMNS; k++) printf " %s |", two(column[COLUMN[k]])
+            printf " %s |\n", two(idle)
+        }
 }
 
 END {
-    columns = split("refinement idle migration gather push-pull scatter light alike",
-                    name)
-    test = (seconds["refinement"] - seconds["looks"] - seconds["prepare"]) / \
-           all["one", "splitting"]
-    look = seconds["looks"] / all["one", "looks"]
-    transfer = seconds["solve"] / all["one", "transfer"]
-    own = seconds["push_pull"] / all["one", "own"]
-    link_test = seconds["linking"] / all["one", "linking"]
-    alike = seconds["prepare"] + seconds["routes"] + seconds["sums"] + \
-            seconds["gather"] + seconds["scatter"]
-    printf "\n## %d triangles, %d links, epsilon %s; network: %s\n\n", \
-           count["one", "triangles"], count["one", "links"], epsilon, network
-    printf "`build/room %d 1 >room.obj`, `mpiexec -n P ./phr room.obj --paper ", size
-    printf "--epsilon %s --balance BALANCE --stats FILE`.\n\n", epsilon
-    printf "A test takes %.1f ns, a look %.1f, light over a link %.1f; ", 1e9 * test, \
-           1e9 * look, 1e9 * transfer
-    printf "a message %g s, a byte %g ns.\n\n", message, 1e9 / bandwidth
-    print "Table 1: processor seconds of the slowest rank and the network, and speed-up."
-    printf "\n| ranks |"
-    head[1] = "splitting"; head[2] = "without linking"; head[3] = "with linking"
-    for (h = 1; h <= 3; h++)
-        for (b = 1; b <= kinds; b++) printf " %s, %s | |", head[h], balance[b]
-    printf "\n|---|"
-    for (i = 1; i <= 6 * kinds; i++) printf "---|"
-    printf "\n"
-    for (i = 1; i <= rows; i++) {
-        printf "| %d |", ranks[i]
-        for (h = 1; h <= 3; h++)
-            for (b = 1; b <= kinds; b++) {
-                fill(balance[b] " " ranks[i], ranks[i])
-                now = h == 1 ? splitting : h == 2 ? total : total + linking
-                if (i == 1) alone[h, b] = now
-                printf " %.4f | %.1f |", now, alone[h, b] / now
-                if (h == 2 && b == 1)
-                    print "phr,_" count["one", "triangles"], ranks[i], \
-                          alone[h, b] / now >figure
-            }
-        printf "\n"
+    for (i = 1; i <= room_count; i++) {
+        split(room[i], part, ":")
+        size[i] = part[1]
+        epsilon[i] = part[2]
+        triangles[i] = count[part[1] " one", "triangles"]
     }
-    printf "\nTable 2: seconds.\n\n| ranks |"
-    for (k = 1; k <= columns; k++) printf " %s |", name[k]
-    printf " linking | idle, none |\n|---|"
-    for (k = 1; k <= columns + 2; k++) printf "---|"
-    printf "\n"
-    for (i = 1; i <= rows; i++) {
-        fill("none " ranks[i], ranks[i])
-        idle = column["idle"]
-        fill("greedy " ranks[i], ranks[i])
-        printf "| %d |", ranks[i]
-        for (k = 1; k <= columns; k++) printf " %.4f |", column[name[k]]
-        printf " %.4f | %.4f |\n", linking, idle
-    }
+    run = size[1] " most linking"
+    uneven = ranks[rows] * slowest[run, "linking"] / all[run, "linking"]
+    print "\nPrices: the median of runs, the lowest and the highest.\n"
+    print_prices()
+    find_medians()
+    printf "\nLinking on %d ranks takes the slowest %.3f times the mean.\n", ranks[rows],
+           uneven
+    print "\nTable 1: seconds and speed-up without linking; speed-up with it.\n"
+    print_table_1()
+    print "\nTable 2, seconds:\n"
+    print_table_2()
 }
