@@ -105,7 +105,7 @@ BEGIN {
     row("all ranks, if the others are like that in the middle", "%.3g", together)
     row("by rank 0 alone, % of one alone", "%.2g", serial)
     row("again by each rank, or only where there are ranks, %", "%.2g", alike)
-    row("so the speed-up is at most, on any number of ranks", "%.2g", most)
+    row("ceiling: the most speed-up on any number of ranks", "%.2g", most)
     for (r = 1; r <= count; r++) {
         print ""
         print_most(name_of[r], again, "Most of what each rank does again, %, " \
