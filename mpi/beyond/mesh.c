@@ -90,6 +90,22 @@ static uint8_t *find_open_roots(struct solver *solver, struct final_gather *gath
 
 /* --- looks --- */
 
+/* Collective. Each rank makes the cuts of some regions, and all get them. */
+static void share_cuts(struct solver *solver, struct cuts *cuts)
+{
+    const struct comm *comm = solver->comm;
+    int64_t regions = cuts->regions->count;
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    cuts_make(cuts, regions * comm->rank / comm->size,
+              regions * (comm->rank + 1) / comm->size);
+    int64_t bytes = cuts->count * (int64_t)sizeof *cuts->nodes;
+    void *nodes = comm_gather_all(comm, cuts->nodes, bytes, at);
+    bytes = at[comm->size];
+    cuts_take(cuts, nodes, bytes / (int64_t)sizeof *cuts->nodes);
+    account_work(&solver->account, WORK_FINAL_GATHER, 0, bytes);
+    alloc_free(at);
+}
+
 struct looking {
     struct meshing *meshing;
     const int32_t *leaves;     /* looked at */
@@ -156,8 +172,10 @@ bool solver_make_mesh(struct solver *solver, int64_t links, struct gather_mesh *
     meshing_begin(&meshing);
     int64_t count = 0;
     int32_t *leaves = meshing_looks(&meshing) ? meshing_choose(&meshing, &count) : NULL;
-    if (count > 0)
+    if (count > 0) {
+        share_cuts(solver, gather->aims->cuts[LAMPS]);
         cuts_count(gather->aims->cuts[LAMPS]);
+    }
     for (int round = 0; round < ROUNDS && count > 0; round++) {
         progress_begin(solver->progress, "looking", round, 0);
         struct gather_look *looks = look(solver, &meshing, leaves, count);

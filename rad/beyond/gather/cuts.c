@@ -125,28 +125,36 @@ double cuts_blind_part(const struct senders *senders, const struct sender_node *
     return real_min(1.0, light[space] / light[node->space]);
 }
 
+/* What a cut is made for. */
+struct region {
+    int32_t number, space;
+    struct bounds bounds;
+};
+
 /* Appends the nodes of a cut below a node. `most`: light of one of these, at most, W/m^2.
  * Returns the light of all. */
-static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t space,
-                        int32_t number, double most)
+static double add_nodes(struct cuts *cuts, const struct region *region, int32_t number,
+                        double most)
 {
     const struct sender_node *node = &cuts->senders->nodes[number];
-    double light = sender_node_worth(cuts->senders, node, region);
-    double worth = light * cuts_blind_part(cuts->senders, node, space);
+    const struct bounds *to = &region->bounds;
+    double light = sender_node_worth(cuts->senders, node, to);
+    double worth = light * cuts_blind_part(cuts->senders, node, region->space);
     double sum = 0.0;
     if (!(worth > 0.0))
         return 0.0;
-    struct vec3 apart = vec3_sub(node->bounds.middle, region->middle);
-    double reach = node->bounds.radius + region->radius;
-    double far = real_max(vec3_length(apart) - reach, region->radius);
+    struct vec3 apart = vec3_sub(node->bounds.middle, to->middle);
+    double reach = node->bounds.radius + to->radius;
+    double far = real_max(vec3_length(apart) - reach, to->radius);
     bool small = node->bounds.radius <= SMALL * far && node->space >= 0;
     if (node->child[0] < 0 || (small && worth <= most)) {
         RESERVE(cuts->nodes, &cuts->capacity, cuts->count + 1);
-        cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .worth = light};
+        cuts->nodes[cuts->count++] = (struct cut_node){
+            .node = number, .region = region->number, .worth = light};
         return worth;
     }
     for (int k = 0; k < 4 && node->child[k] >= 0; k++)
-        sum += add_nodes(cuts, region, space, node->child[k], most);
+        sum += add_nodes(cuts, region, node->child[k], most);
     return sum;
 }
 
@@ -184,27 +192,45 @@ static void find_shares(struct cuts *cuts, int32_t region)
     }
 }
 
-static void make_cut(struct cuts *cuts, int32_t region)
+static void make_cut(struct cuts *cuts, int32_t number)
 {
     const struct model *model = cuts->senders->model;
-    struct bounds bounds = bounds_of(model, cuts->regions->nodes[region]);
-    int32_t space = node_space(model, cuts->regions->nodes[region]);
-    struct cut *cut = &cuts->cuts[region];
+    int32_t node = cuts->regions->nodes[number];
+    struct region region = {number, node_space(model, node), bounds_of(model, node)};
+    struct cut *cut = &cuts->cuts[number];
     double most = HUGE_VAL;
-    cut->first = cuts->count;
+    *cut = (struct cut){.first = cuts->count};
     for (int pass = 0; pass < 2 && cuts->senders->count > 0; pass++) {
         cuts->count = cut->first;
-        most = add_nodes(cuts, &bounds, space, 0, most) / cuts->segments;
+        most = add_nodes(cuts, &region, 0, most) / cuts->segments;
     }
     cut->count = cuts->count - cut->first;
-    find_shares(cuts, region);
+}
+
+void cuts_make(struct cuts *cuts, int64_t first, int64_t end)
+{
+    for (int64_t region = first; region < end; region++)
+        if (cuts->cuts[region].first < 0)
+            make_cut(cuts, (int32_t)region);
+}
+
+void cuts_take(struct cuts *cuts, struct cut_node *nodes, int64_t count)
+{
+    alloc_free(cuts->nodes);
+    cuts->nodes = nodes;
+    cuts->capacity = cuts->count = count;
+    int64_t end = 0;
+    for (int32_t region = 0; region < cuts->regions->count; region++) {
+        int64_t first = end;
+        while (end < count && nodes[end].region == region)
+            end++;
+        cuts->cuts[region] = (struct cut){.first = first, .count = end - first};
+    }
 }
 
 void cuts_count(struct cuts *cuts)
 {
-    for (int32_t region = 0; region < cuts->regions->count; region++)
-        if (cuts->cuts[region].first < 0)
-            make_cut(cuts, region);
+    cuts_make(cuts, 0, cuts->regions->count);
     cuts->tally = alloc_array(2 * (size_t)cuts->count, sizeof *cuts->tally);
 }
 
@@ -218,8 +244,8 @@ void cuts_learn(struct cuts *cuts)
         }
         cuts->tally[2 * i] = cuts->tally[2 * i + 1] = 0;
     }
-    for (int32_t region = 0; region < cuts->regions->count; region++)
-        find_shares(cuts, region);
+    for (int64_t region = 0; region < cuts->regions->count; region++)
+        cuts->cuts[region].mean = 0.0;
 }
 
 void cuts_limit(struct cuts *cuts)
@@ -238,6 +264,8 @@ struct cut cuts_at(struct cuts *cuts, int32_t leaf)
         return (struct cut){0, 0, 1.0};
     if (cuts->cuts[region].first < 0)
         make_cut(cuts, region);
+    if (cuts->cuts[region].mean == 0.0)
+        find_shares(cuts, region);
     return cuts->cuts[region];
 }
 

@@ -27,6 +27,7 @@ void regions_destroy(struct regions *regions);
 /* A node of a cut. */
 struct cut_node {
     int32_t node;    /* of the tree of senders */
+    int32_t region;  /* whose cut it is */
     int32_t asked;   /* segments of looks from the region to the node */
     int32_t arrived; /* those of them that nothing blocks */
     double worth;    /* light reaching the region, about, with nothing in the way, over
@@ -38,7 +39,8 @@ struct cut_node {
 struct cut {
     int64_t first; /* of its nodes; -1: not made yet */
     int64_t count;
-    double mean;   /* share of segments that arrive, of all its nodes, 1: above 0 */
+    double mean;   /* share of segments that arrive, of all its nodes, 1: above 0;
+                      0: shares are not found yet */
 };
 
 struct cuts {
@@ -61,6 +63,13 @@ double cuts_blind_part(const struct senders *senders, const struct sender_node *
 struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
                          int segments);
 void cuts_destroy(struct cuts *cuts); /* NULL: none */
+
+/* Makes the cuts of regions first .. end - 1 that are not made yet. */
+void cuts_make(struct cuts *cuts, int64_t first, int64_t end);
+
+/* Takes the nodes of the cuts of all regions, [count], in the order of the regions, in
+ * place of its own. Owns `nodes`. */
+void cuts_take(struct cuts *cuts, struct cut_node *nodes, int64_t count);
 
 /* Makes the cuts of all regions, the same on all ranks, and begins to count. */
 void cuts_count(struct cuts *cuts);
