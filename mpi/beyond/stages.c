@@ -21,6 +21,9 @@ static const double PART = 0.9;
 /* A stage dealing no more than this number of items for each rank is the last one. */
 enum { LAST = 32 };
 
+/* Neighbours dealt to a rank together, at most: they share proofs and cuts. */
+enum { TOGETHER = 8 };
+
 /* Items and tests of a rank in a stage; no padding. */
 struct stint {
     int64_t items, tests;
@@ -38,18 +41,24 @@ static void list_items(struct stages *s)
                 s->items[s->left++] = (int32_t)i;
 }
 
-/* Deals the items left. Returns the number of tests after which a rank stops. */
+/* Deals the items left, some neighbours together. Returns the number of tests after which
+ * a rank stops. */
 static double deal(struct stages *s)
 {
     int ranks = s->solver->comm->size;
-    int *rank_of = alloc_array((size_t)s->left, sizeof *rank_of);
-    int64_t *work = alloc_array((size_t)s->left, sizeof *work), sum = 0;
-    for (int64_t k = 0; k < s->left; k++)
-        sum += work[k] = s->work[s->items[k]];
+    int64_t each = s->left / (LAST * ranks);
+    each = each < 1 ? 1 : each > TOGETHER ? TOGETHER : each;
+    int64_t count = (s->left + each - 1) / each;
+    int *rank_of = alloc_array((size_t)count, sizeof *rank_of);
+    int64_t *work = alloc_array((size_t)count, sizeof *work), sum = 0;
+    for (int64_t k = 0; k < s->left; k++) {
+        work[k / each] += s->work[s->items[k]];
+        sum += s->work[s->items[k]];
+    }
     s->all = s->left == s->count ? (double)sum : s->all;
-    items_deal(work, (int32_t)s->left, ranks, rank_of);
+    items_deal(work, (int32_t)count, ranks, rank_of);
     for (int64_t k = 0; k < s->left; k++)
-        s->rank_of[s->items[k]] = rank_of[k];
+        s->rank_of[s->items[k]] = rank_of[k / each];
     alloc_free(work);
     alloc_free(rank_of);
     return s->left > LAST * ranks ? PART * s->ratio * (double)sum / ranks : HUGE_VAL;
