@@ -89,8 +89,7 @@ struct roof {
 
 /* Answers so far, which spare a wall of many triangles a walk over the wall for each. */
 struct roofs {
-    const struct tree *all;
-    const struct triangle *triangles;
+    const struct octree *octree; /* whose trees have all triangles */
     double reach;          /* no corner is farther from the origin */
     struct vec3 corner;    /* the last one found above a plane */
     struct roof last[ROOFS_MAX];
@@ -112,17 +111,20 @@ static bool is_under_roof(const struct roofs *roofs, const struct plane *plane)
 
 static bool reaches_above(struct roofs *roofs, struct vec3 normal, double offset)
 {
-    struct above above = {{normal, offset}, roofs->triangles, roofs->corner, -HUGE_VAL};
+    const struct octree *octree = roofs->octree;
+    const struct tree *trees[] = {&octree->inside, &octree->hull};
+    struct above above = {{normal, offset}, octree->triangles, roofs->corner, -HUGE_VAL};
     struct octree_counts counts = {0};
     if (plane_distance(&above.plane, roofs->corner) > HULL_MARGIN)
         return true;
     if (is_under_roof(roofs, &above.plane))
         return false;
-    if (tree_walk(roofs->all, above_enters, &above, 0, NULL, find_corner, &above,
-                  &counts)) {
-        roofs->corner = above.corner;
-        return true;
-    }
+    for (int k = 0; k < 2; k++)
+        if (tree_walk(trees[k], above_enters, &above, 0, NULL, find_corner, &above,
+                      &counts)) {
+            roofs->corner = above.corner;
+            return true;
+        }
     roofs->last[roofs->count++ % ROOFS_MAX] = (struct roof){above.plane, above.highest};
     return false;
 }
@@ -133,6 +135,46 @@ static bool is_on_hull(struct roofs *roofs, const struct plane *plane)
     struct vec3 back = vec3_scale(plane->normal, -1.0);
     return !reaches_above(roofs, plane->normal, plane->offset) ||
            !reaches_above(roofs, back, -plane->offset);
+}
+
+/* Corners farthest out in some directions, one after the other to both sides. */
+enum { LINES = 7 };
+
+struct ends {
+    struct vec3 corner[2 * LINES];
+};
+
+static void find_ends(const struct octree *octree, const int32_t *order, int32_t count,
+                      struct ends *ends)
+{
+    static const struct vec3 line[LINES] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1},
+                                            {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    double far[2 * LINES];
+    for (int k = 0; k < 2 * LINES; k++)
+        far[k] = -HUGE_VAL;
+    for (int64_t i = 0; i < 3 * (int64_t)count; i++) {
+        struct vec3 x = octree->triangles[order[i / 3]].corner[i % 3];
+        for (int k = 0; k < 2 * LINES; k++) {
+            double along = (k % 2 ? -1.0 : 1.0) * vec3_dot(line[k / 2], x);
+            if (along > far[k]) {
+                far[k] = along;
+                ends->corner[k] = x;
+            }
+        }
+    }
+}
+
+/* True if there are ends on both sides of the plane: most triangles are told apart from
+ * the hull by this. */
+static bool is_between(const struct ends *ends, const struct plane *plane)
+{
+    bool front = false, back = false;
+    for (int k = 0; k < 2 * LINES && !(front && back); k++) {
+        double height = plane_distance(plane, ends->corner[k]);
+        front = front || height > HULL_MARGIN;
+        back = back || height < -HULL_MARGIN;
+    }
+    return front && back;
 }
 
 /* --- building --- */
@@ -152,29 +194,43 @@ static void set_ball(struct octree *octree, const int32_t *order, int32_t count)
     octree->radius = 0.5 * vec3_length(vec3_sub(high, low)) * 1.0001 + GEOM_ROUNDING;
 }
 
-/* Builds the trees over the `kept` triangles in `order`. */
+/* Builds the trees over `count` triangles in `order`, [count] on the hull or inside. */
+static void build_trees(struct octree *octree, const int32_t *order, const bool *on_hull,
+                        int32_t count)
+{
+    int32_t *part = alloc_array((size_t)count, sizeof *part);
+    struct tree *trees[] = {&octree->inside, &octree->hull};
+    for (int k = 0; k < 2; k++) {
+        int32_t own = 0;
+        for (int32_t i = 0; i < count; i++)
+            if (on_hull[i] == (k == 1))
+                part[own++] = order[i];
+        tree_free(trees[k]);
+        *trees[k] = tree_build(octree->triangles, octree->planes, part, own);
+    }
+    alloc_free(part);
+}
+
+/* Builds the trees over the `kept` triangles in `order`: with all on the hull that may be,
+ * and again if some of them are not. */
 static void plant_trees(struct octree *octree, const int32_t *order, int32_t kept)
 {
-    int32_t *inside = alloc_array((size_t)kept, sizeof *inside);
-    int32_t *hull = alloc_array((size_t)kept, sizeof *hull);
-    int32_t inside_count = 0, hull_count = 0;
-    struct tree all = tree_build(octree->triangles, octree->planes, order, kept);
-    struct roofs found = {.all = &all, .triangles = octree->triangles,
+    bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull), right = true;
+    struct roofs found = {.octree = octree,
                           .reach = vec3_length(octree->middle) + octree->radius};
+    struct ends ends;
+    find_ends(octree, order, kept, &ends);
+    for (int32_t i = 0; i < kept; i++)
+        on_hull[i] = !is_between(&ends, &octree->planes[order[i]]);
+    build_trees(octree, order, on_hull, kept);
     if (kept > 0)
         found.corner = octree->triangles[order[0]].corner[0];
-    for (int32_t i = 0; i < kept && !stop_is_asked(); i++) {
-        int32_t t = order[i];
-        if (is_on_hull(&found, &octree->planes[t]))
-            hull[hull_count++] = t;
-        else
-            inside[inside_count++] = t;
-    }
-    tree_free(&all);
-    octree->inside = tree_build(octree->triangles, octree->planes, inside, inside_count);
-    octree->hull = tree_build(octree->triangles, octree->planes, hull, hull_count);
-    alloc_free(inside);
-    alloc_free(hull);
+    for (int32_t i = 0; i < kept && !stop_is_asked(); i++)
+        if (on_hull[i] && !is_on_hull(&found, &octree->planes[order[i]]))
+            on_hull[i] = right = false;
+    if (!right)
+        build_trees(octree, order, on_hull, kept);
+    alloc_free(on_hull);
 }
 
 struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
