@@ -422,6 +422,18 @@ one_flipped() { # half of a side of a room
     quad 1 0 0 1 1 0 1 1 1 1 1 1
 }
 
+backs() { # walls show their backs to a room; floor and ceiling go on below and above
+    paint wall .7 0
+    sheet x 0 - 0 0 1 1
+    sheet x 1 + 0 0 1 1
+    sheet y 0 - 0 0 1 1
+    sheet y 1 + 0 0 1 1
+    paint floor .5 0
+    sheet z 0 + -.02 -.02 1.02 1.02
+    paint lamp .5 1
+    sheet z 1 - -.02 -.02 1.02 1.02
+}
+
 kept() { # RHO: a lamp that reflects as all does
     furnished "$1" 0
     paint lamp "$1" 100
