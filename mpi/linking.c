@@ -106,7 +106,10 @@ static bool link_pairs(struct solver *solver, const int32_t *roots, int64_t coun
             }
             struct facet facet_j = facet_make(model->forest, roots[at.j]);
             struct link link;
-            if (model->method.make_link(model, roots[line], &facet_i, roots[at.j],
+            bool both_sky = scene_is_sky(model->scene, roots[line]) &&
+                            scene_is_sky(model->scene, roots[at.j]);
+            if (!both_sky && /* a sky reflects nothing */
+                model->method.make_link(model, roots[line], &facet_i, roots[at.j],
                                         &facet_j, NULL, &link))
                 link_list_append(&solver->links, link);
             number += solver->comm->size;

@@ -123,6 +123,13 @@ sed '$d' "$work/dome.obj" >"$work/hole.obj"
 ./phr "$work/hole.obj" --epsilon 1 -o "$work/dome.png" >"$work/out" 2>"$work/log"
 check "one with a hole stays" [ "$(grep -c "taken as a sky" "$work/log")" = 0 ]
 
+# Facets of a sky send each other much, which counts nowhere: they have no links.
+sed "s/usemtl black/usemtl grey/" "$work/square.obj" >"$work/grey.obj"
+./phr "$work/grey.obj" --up z --sky 1 --paper --epsilon 1e-3 --memory 64M \
+    --stats "$work/stats" >"$work/out" 2>"$work/log"
+check "--paper: a sky has no links with itself" \
+    holds "$(stat_of "$work/stats" links) < 10000"
+
 # Errors, and outputs.
 # refuses LINE OPTIONS...
 refuses() {
