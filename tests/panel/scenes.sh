@@ -782,6 +782,17 @@ level_plate() { # RHO
     sheet z 0 + 0 0 2 1
 }
 
+leaning() { # RHO: ten by ten squares in a plane that leans back by 30 degrees
+    paint plane "$1" 0
+    each 0 99 square_of_plane
+}
+square_of_plane() {
+    low=$(of "int($k / 10)") x=$((k % 10))
+    y=$(of "$low * .5") z=$(of "$low * cos(pi / 6)")
+    top="$(of "($low + 1) * .5") $(of "($low + 1) * cos(pi / 6)")"
+    quad $x $y $z $((x + 1)) $y $z $((x + 1)) $top $x $top
+}
+
 box_on_plain() { # RHO: on black
     paint top "$1" 0
     sides -1 -1 0 1 1 2 z+

@@ -36,9 +36,14 @@ static const double NEARBY = 2.0;
 /* Fewest segments for an estimate of the visible share of senders. */
 enum { VOLLEY = 4 };
 
-/* Segments to neighbouring nodes of the cut, in two halves. */
+/* Segments to neighbouring nodes of the cut, in two halves. Of a node that is a single
+ * sender and has segments of its own the light without blockers is known. A draw, be it
+ * of a faint node among others or of one of a node's senders, has the expected light in
+ * the mean alone: its scatter around that is noise even where nothing is in the way. */
 struct volley {
-    double direct[2]; /* light without blockers, about, over all bands, W/m^2 */
+    bool drawn;       /* the segments are draws */
+    double direct[2]; /* light without blockers, known or expected, over all bands,
+                         W/m^2 */
     double seen[2];   /* light with blockers */
     int count[2];     /* segments */
     double direct2, seen2, both; /* sums over segments of `direct` and `seen` squared, and
@@ -59,14 +64,20 @@ static void add_segment(struct volley *volley, int i, int count, double direct,
 }
 
 /* Adds the variance of the volley's light to the row, twice: as by chance, from the
- * scatter of single segments around the mean visible share; and by the difference of the
- * two halves. Both have the colour of one sender of the volley. */
+ * scatter of single segments around the mean visible share, which for one draw alone is
+ * 1; and by the difference of the two halves. Both have the colour of one sender of the
+ * volley. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
 {
     double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
     double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
+    int count = volley->count[0] + volley->count[1];
+    if (volley->drawn && count == 1 && share > 0.0)
+        share = 1.0;
     double variance =
         volley->seen2 + share * (share * volley->direct2 - 2.0 * volley->both);
+    if (volley->drawn && count > 1)
+        variance *= count / (count - 1.0);
     if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
         apart = 0.5 * (volley->seen[0] / volley->direct[0] -
                        volley->seen[1] / volley->direct[1]);
@@ -75,7 +86,7 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
         r->row->chance.band[c] += part * part * fmax(0.0, variance);
         r->row->halves.band[c] += h * h * apart * apart;
     }
-    *volley = (struct volley){.direct = {0.0, 0.0}};
+    *volley = (struct volley){.drawn = volley->drawn};
 }
 
 /* The senders aimed at, and the segments to a node of their cut. */
@@ -84,7 +95,9 @@ struct aim {
     struct sequence sequence; /* of the node */
     int index;                /* in the sequence, of the next segment */
     int64_t fired, arrived;   /* segments so far, to all nodes */
-    struct volley volley;
+    double direct;            /* their light without blockers, over all bands, W/m^2 */
+    double expected;          /* of the next segments, if they are draws, each; or -1 */
+    struct volley volleys[2]; /* of known senders, and of draws */
 };
 
 static struct shot shot_at(const struct receiver *r, const struct aim *aim,
@@ -201,7 +214,10 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
         double seen =
             add_shot(r, aim, &shot, patch, part,
                      hash_mix(aim->sequence.scramble[1] + (uint64_t)(aim->index + k)));
-        add_segment(&aim->volley, k, count, part * sent, seen);
+        bool drawn = aim->expected >= 0.0;
+        aim->direct += part * sent;
+        add_segment(&aim->volleys[drawn], k, count, drawn ? aim->expected : part * sent,
+                    seen);
     }
 }
 
@@ -254,8 +270,8 @@ static void make_exact(const struct receiver *r, const struct senders *senders,
     struct facet sender = facet_make(r->gather->model->forest, patch);
     bool faces = facets_face(&r->facet, &sender);
     offer->factor = faces ? exact_factor(r, senders, &sender) : 0.0;
-    offer->worth =
-        offer->factor * rgb_sum(sender_light(senders, patch)) * offer->blind;
+    offer->light = offer->factor * rgb_sum(sender_light(senders, patch));
+    offer->worth = offer->light * offer->blind;
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by visible light.
@@ -275,8 +291,8 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
         const struct sender_node *node = &senders->nodes[at->node];
         double blind = cuts_blind_part(senders, node, space);
         double worth = sender_node_worth(senders, node, &own) * blind;
-        aims->offers[i] =
-            (struct offer){worth, -1.0, blind, cut_found(&cut, at, blind)};
+        aims->offers[i] = (struct offer){worth, worth / blind, -1.0, blind,
+                                         cut_found(&cut, at, blind)};
         all += worth;
     }
     for (int64_t i = 0; i < cut.count; i++) {
@@ -321,7 +337,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     for (int64_t i = 0; i < cut.count; i++)
         faint += offers[i].worth < each ? offers[i].worth : 0.0;
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
-    struct aim aim = {.senders = cuts->senders};
+    struct aim aim = {.senders = cuts->senders, .volleys[1].drawn = true};
     int32_t space = node_space(cuts->senders->model, r->row->leaf);
     struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
     for (int64_t i = 0; i < cut.count; i++) {
@@ -333,16 +349,16 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
             continue;
-        struct volley *volley = &aim.volley;
         struct aim before = aim;
+        double part = sure ? 1.0 : count * weak.each / worth;
+        bool drawn = !sure || at->child[0] >= 0;
+        aim.expected = drawn ? part * offers[i].light / count : -1.0;
+        struct volley *volley = &aim.volleys[drawn], fired = *volley;
         aim.sequence = sequence_start(hash_mix(r->seed + 8) ^
                                       hash_mix((uint64_t)node.node));
         aim.index = 0;
-        aim_at_node(r, &aim, node.node, count, sure ? 1.0 : count * weak.each / worth,
-                    offers[i].factor);
-        double direct =
-            volley->direct[0] + volley->direct[1] -
-            before.volley.direct[0] - before.volley.direct[1];
+        aim_at_node(r, &aim, node.node, count, part, offers[i].factor);
+        double direct = aim.direct - before.direct;
         bool none = aim.arrived == before.arrived;
         if (r->kind == RECEIVER_LOOK && cuts->tally) {
             cuts->tally[2 * (cut.first + i)] += aim.fired - before.fired;
@@ -352,7 +368,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         if (!none && at->space != space)
             r->gather->counts.crossed++;
         if (none && unseen) {
-            *volley = before.volley; /* of another space, as ever: no doubt */
+            *volley = fired; /* of another space, as ever: no doubt */
             continue;
         }
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
@@ -363,7 +379,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         if (volley->count[0] + volley->count[1] >= VOLLEY)
             end_volley(r, volley, light);
     }
-    end_volley(r, &aim.volley, light);
+    end_volley(r, &aim.volleys[0], light);
+    end_volley(r, &aim.volleys[1], light);
     for (int c = 0; c < BANDS; c++) {
         r->row->chance.band[c] = fmax(r->row->chance.band[c], around.band[c]);
         r->row->halves.band[c] = fmax(r->row->halves.band[c], around.band[c]);
