@@ -77,7 +77,11 @@ static struct member member_of(const struct cutter *cutter, int32_t root,
 static int32_t part_items(struct cutter *cutter, int32_t from, int32_t to, int key,
                           double limit)
 {
-    int32_t front = from, back = 0;
+    int32_t front = from, back = 0, below = 0;
+    for (int32_t i = from; i < to; i++)
+        below += cutter->items[i].key[key] < limit;
+    if (below == 0 || below == to - from) /* as mostly: nothing moves */
+        return below;
     for (int32_t i = from; i < to; i++) {
         if (cutter->items[i].key[key] < limit)
             cutter->items[front++] = cutter->items[i];
