@@ -140,37 +140,37 @@ static bool is_on_hull(struct roofs *roofs, const struct plane *plane)
 /* Corners farthest out in some directions, one after the other to both sides. */
 enum { LINES = 7 };
 
-struct ends {
+struct far_corners {
     struct vec3 corner[2 * LINES];
 };
 
-static void find_ends(const struct octree *octree, const int32_t *order, int32_t count,
-                      struct ends *ends)
+static void find_far_corners(const struct octree *octree, const int32_t *order,
+                             int32_t count, struct far_corners *far)
 {
     static const struct vec3 line[LINES] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1},
                                             {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
-    double far[2 * LINES];
+    double most[2 * LINES];
     for (int k = 0; k < 2 * LINES; k++)
-        far[k] = -HUGE_VAL;
+        most[k] = -HUGE_VAL;
     for (int64_t i = 0; i < 3 * (int64_t)count; i++) {
         struct vec3 x = octree->triangles[order[i / 3]].corner[i % 3];
         for (int k = 0; k < 2 * LINES; k++) {
             double along = (k % 2 ? -1.0 : 1.0) * vec3_dot(line[k / 2], x);
-            if (along > far[k]) {
-                far[k] = along;
-                ends->corner[k] = x;
+            if (along > most[k]) {
+                most[k] = along;
+                far->corner[k] = x;
             }
         }
     }
 }
 
-/* True if there are ends on both sides of the plane: most triangles are told apart from
- * the hull by this. */
-static bool is_between(const struct ends *ends, const struct plane *plane)
+/* True if there are far corners on both sides of the plane: most triangles are told apart
+ * from the hull by this. */
+static bool is_between(const struct far_corners *far, const struct plane *plane)
 {
     bool front = false, back = false;
     for (int k = 0; k < 2 * LINES && !(front && back); k++) {
-        double height = plane_distance(plane, ends->corner[k]);
+        double height = plane_distance(plane, far->corner[k]);
         front = front || height > HULL_MARGIN;
         back = back || height < -HULL_MARGIN;
     }
@@ -211,17 +211,17 @@ static void build_trees(struct octree *octree, const int32_t *order, const bool 
     alloc_free(part);
 }
 
-/* Builds the trees over the `kept` triangles in `order`: with all on the hull that may be,
- * and again if some of them are not. */
+/* Builds the trees over the `kept` triangles in `order`: with all on the hull that may
+ * be, and again if some of them are not. */
 static void plant_trees(struct octree *octree, const int32_t *order, int32_t kept)
 {
     bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull), right = true;
     struct roofs found = {.octree = octree,
                           .reach = vec3_length(octree->middle) + octree->radius};
-    struct ends ends;
-    find_ends(octree, order, kept, &ends);
+    struct far_corners far;
+    find_far_corners(octree, order, kept, &far);
     for (int32_t i = 0; i < kept; i++)
-        on_hull[i] = !is_between(&ends, &octree->planes[order[i]]);
+        on_hull[i] = !is_between(&far, &octree->planes[order[i]]);
     build_trees(octree, order, on_hull, kept);
     if (kept > 0)
         found.corner = octree->triangles[order[0]].corner[0];

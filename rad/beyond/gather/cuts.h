@@ -90,8 +90,8 @@ struct cut cuts_at(struct cuts *cuts, int32_t leaf);
  * more. Above 0. */
 double cut_seen(const struct cut *cut, const struct cut_node *node);
 
-/* The share by which segments are dealt, 1: arrived / asked. Not asked: the visible share,
- * or 0 if `blind`, the node's cuts_blind_part(), is below 1. */
+/* The share by which segments are dealt, 1: arrived / asked. Not asked: the visible
+ * share, or 0 if `blind`, the node's cuts_blind_part(), is below 1. */
 double cut_found(const struct cut *cut, const struct cut_node *node, double blind);
 
 /* Chooses a sender of a cut for a point of its region by the light known to arrive there;

@@ -153,8 +153,8 @@ void final_gather_renew(struct final_gather *gather);
  * final_gather_forget(). */
 void final_gather_drop_cuts(struct final_gather *gather);
 
-/* Does as final_gather_renew(), and forgets all rows, leaves too near, and what looks have
- * told, also when lamps have changed: the gather is as a stored solution has it. */
+/* Does as final_gather_renew(), and forgets all rows, leaves too near, and what looks
+ * have told, also when lamps have changed: the gather is as a stored solution has it. */
 void final_gather_forget(struct final_gather *gather);
 
 /* The work of this rank so far, proofs included, in tests. */
