@@ -143,20 +143,16 @@ enum { ALWAYS = INT32_MAX };
 static int32_t *marks_of(struct solver *solver)
 {
     struct routes *routes = &solver->routes;
-    int64_t clusters = solver->memory.clusters, before = routes->capacity,
-            all = solver->model.forest->count + clusters;
-    if (before < all) {
-        RESERVE(routes->known, &routes->capacity, all);
-        memset(routes->known + before, 0,
-               (size_t)(routes->capacity - before) * sizeof *routes->known);
-    }
+    int64_t clusters = solver->memory.clusters, before = routes->capacity;
+    RESERVE(routes->known, &routes->capacity, solver->model.forest->count + clusters);
+    memset(routes->known + before, 0,
+           (size_t)(routes->capacity - before) * sizeof *routes->known);
     return routes->known + clusters;
 }
 
 /* True of a node of another home that is not marked so far, or with less. Nodes at home
  * are marked, too: a mark is cheaper to find than a home. */
-static bool is_new(const struct solver *solver, int32_t *marks, int32_t node,
-                   int32_t mark)
+static bool is_new(struct solver *solver, int32_t *marks, int32_t node, int32_t mark)
 {
     if (marks[node] >= mark)
         return false;
@@ -172,9 +168,8 @@ void routes_renew(struct solver *solver)
     int32_t *wanted = alloc_array((size_t)all, sizeof *wanted), *marks = marks_of(solver);
     for (int64_t i = 0; i < links->seen && solver->comm->size > 1; i++) {
         int32_t ends[METHOD_ENDS_MAX] = {links->items[i].p, links->items[i].q};
-        int number = 2;
-        if (model->method.ends)
-            number = model->method.ends(model, &links->items[i], ends);
+        int number =
+            model->method.ends ? model->method.ends(model, &links->items[i], ends) : 2;
         for (int k = 0; k < number; k++)
             if (is_new(solver, marks, ends[k], ALWAYS))
                 wanted[count++] = ends[k];

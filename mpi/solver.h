@@ -58,8 +58,7 @@ struct routes {
     struct route originals; /* nodes at home here, by the ranks with proxies of them, in
                                the order there */
     int32_t *known;         /* [capacity] of clusters, last one first, and patches: the
-                               last pass whose radiosity is known here; see
-                               mpi/scatter.c */
+                               last pass whose radiosity is known here */
     int64_t capacity;
 };
 

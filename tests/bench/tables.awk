@@ -164,7 +164,8 @@ function print_prices(    i, k, t, x, text) {
         text = ""
         for (k = 1; k <= KINDS; k++) {
             for (t = 1; t <= turn_count; t++)
-                x[t] = price[size[i], KIND[k], turn[t]] = price_of(size[i], KIND[k], turn[t])
+                x[t] = price[size[i], KIND[k], turn[t]] = \
+                    price_of(size[i], KIND[k], turn[t])
             price[size[i], KIND[k], "median"] = median_of(x, turn_count)
             text = text sprintf(" %s (%s to %s) |", two(1e9 * median_of(x, turn_count)),
                                 two(1e9 * least), two(1e9 * most))
@@ -198,8 +199,8 @@ function print_table_1(    i, r, p, now) {
         printf "\n| %d |", p
         for (i = 1; i <= room_count; i++) {
             now = gain(size[i], p, "median", 0)
-            printf " %s | %s | %s |", two(today(size[i], "greedy", p, "median")), two(now),
-                   two(gain(size[i], p, "median", 1))
+            printf " %s | %s |", two(today(size[i], "greedy", p, "median")), two(now)
+            printf " %s |", two(gain(size[i], p, "median", 1))
             print "phr,_" grouped(triangles[i]), p, now >figure
         }
     }
@@ -209,7 +210,8 @@ function print_table_1(    i, r, p, now) {
     printf "\n| %d, Ethernet |", p
     for (i = 1; i <= room_count; i++) {
         now = fill(size[i], "greedy", p, "median", ETHERNET, ETHERNET_BYTES)
-        printf " %s | %s | |", two(now), two(today(size[i], "greedy", 1, "median") / now)
+        printf " %s |", two(now)
+        printf " %s | |", two(today(size[i], "greedy", 1, "median") / now)
     }
     printf "\n"
 }
