@@ -3,15 +3,14 @@
  * The polygon is projected along the axis in which its Newell normal (the sum of the
  * cross products of successive corners) is largest; so the orientation stays, and corners
  * may lie a little off a plane. If all triangles (0, i, i+1) then turn left, the angle
- * about corner 0 grows all the way, and the fan is a triangulation. Almost all input is
- * of this kind, and takes linear time.
+ * about corner 0 grows all the way, and the fan is a triangulation: that of most quads.
  *
- * Otherwise ears are cut: corners b with neighbours a and c where a, b, c turn left and
+ * Of others ears are cut: corners b with neighbours a and c where a, b, c turn left and
  * no other corner lies in the closed triangle. Cutting one changes the state of its two
  * neighbours only, so n corners take n^2 tests of a point against a triangle. After a cut
- * the search goes on two corners further, which gives fewer slivers than cutting round
- * one corner. Straight corners are no ears, so each ends as a corner of triangles with an
- * area.
+ * the search goes on two corners further: of a disc this leaves large triangles within,
+ * where a fan has slivers alone. Straight corners are no ears, so each ends as a corner
+ * of triangles with an area.
  *
  * Corners where the edges fold back over themselves (repeated corners, spikes) enclose
  * nothing and are cut before all others. Corners in the same place as one of an ear's do
@@ -195,7 +194,7 @@ void polygon_triangulate(const struct vec3 *corners, int32_t count, int32_t *tri
 {
     struct corner *ring = alloc_array((size_t)count, sizeof *ring);
     project(corners, count, ring);
-    if (!is_fan(ring, count)) {
+    if (count > 4 || !is_fan(ring, count)) {
         clip_ears(ring, count, triangles);
     } else {
         for (int32_t i = 1; i + 1 < count; i++, triangles += 3) {

@@ -95,6 +95,22 @@ static void check_fan(const char *name, const struct vec3 *corners, int32_t coun
     alloc_free(triangles);
 }
 
+/* The part of the area that the largest triangle has. */
+static double largest_part(const struct vec3 *corners, int32_t count)
+{
+    int32_t *triangles = cut(corners, count);
+    double largest = 0.0, sum = 0.0;
+    for (int32_t t = 0; t < count - 2; t++) {
+        const int32_t *triangle = &triangles[3 * t];
+        double area =
+            vec3_length(cross_of(corners, triangle[0], triangle[1], triangle[2]));
+        largest = fmax(largest, area);
+        sum += area;
+    }
+    alloc_free(triangles);
+    return largest / sum;
+}
+
 static void test_convex(void)
 {
     static const struct vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -105,7 +121,9 @@ static void test_convex(void)
     struct vec3 *circle = alloc_array(1000, sizeof *circle);
     for (int32_t i = 0; i < 1000; i++)
         circle[i] = (struct vec3){cos(i * 0.006283), 5.0, sin(i * 0.006283)};
-    check_fan("1,000 corners on a circle", circle, 1000);
+    check("1,000 corners on a circle", circle, 1000, true);
+    tap_ok(largest_part(circle, 1000) > 0.25,
+           "1,000 corners on a circle: not into slivers alone");
     alloc_free(circle);
 }
 
