@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "rad/beyond/gather/covers.h"
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/sample.h"
 
@@ -165,17 +166,20 @@ static double sum_of_row(const struct gather_sums *sums)
     return sum;
 }
 
-/* False if an exact row has an impossible sum, as where faces lie on each other. A row
- * all but summing to 1 is made to do so. */
+/* False if an exact row has an impossible sum, as where faces lie on each other, or is
+ * inside of a thing. A row all but summing to 1 is made to do so. */
 static bool close_row(struct receiver *r)
 {
     const struct gather_sums *sums = r->gather->sums;
     double sum = sum_of_row(sums);
-    if (sum > 1.0 + CLOSED)
+    bool partial = sum > 0.0 && sum < 1.0 - CLOSED;
+    struct vec3 normal = r->facet.plane.normal, x = triangle_centroid(&r->facet.triangle);
+    if (sum > 1.0 + CLOSED ||
+        (partial && ray_comes_from_inside(r, point_above(x, normal), normal)))
         return false;
     r->gather->counts.exact++;
     r->row->cover.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
-    r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
+    r->gather->counts.escaped += partial;
     for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)
             sums->items[i].weight[c] /= sum;
