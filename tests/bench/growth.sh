@@ -69,7 +69,7 @@ done
         "refinement | all |"
     echo "|---|---|---|---|---|---|---|---|"
     awk -F, 'NR > 1 {
-        printf "| %s | %d | %d | %.2g M | %.2g GB | %.2g s | %.2g s | %.2g s |\n", $2, $3,
+        printf "| %s | %d | %d | %.3g M | %.2g GB | %.2g s | %.2g s | %.3g s |\n", $2, $3,
                $5, $6 / 1e6, $9 / 1e9, $10, $11, $12
     }' "$CSV"
     echo
