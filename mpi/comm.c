@@ -266,17 +266,20 @@ void comm_share(const struct comm *comm, void *records, const int *counts, const
     MPI_Type_free(&record);
 }
 
-uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at)
+void *comm_gather_all(const struct comm *comm, const void *own, int64_t count,
+                      size_t bytes, int64_t *all)
 {
-    int size = comm_count(comm, bytes);
-    int *sizes = comm_gather_each(comm, &size, sizeof size);
-    at[comm->size] = (int)comm_displacements(comm, sizes, at);
-    uint8_t *all = alloc_array((size_t)at[comm->size], 1);
-    if (size > 0)
-        memcpy(all + at[comm->rank], own, (size_t)size);
-    comm_share(comm, all, sizes, at, 1);
-    alloc_free(sizes);
-    return all;
+    int number = comm_count(comm, count);
+    int *counts = comm_gather_each(comm, &number, sizeof number);
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    *all = comm_displacements(comm, counts, at);
+    char *records = alloc_array((size_t)*all, bytes);
+    if (number > 0)
+        memcpy(records + (size_t)at[comm->rank] * bytes, own, (size_t)number * bytes);
+    comm_share(comm, records, counts, at, bytes);
+    alloc_free(at);
+    alloc_free(counts);
+    return records;
 }
 
 const char *comm_build(void)

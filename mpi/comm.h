@@ -70,11 +70,10 @@ void comm_share(const struct comm *comm, void *records, const int *counts, const
  * freed with alloc_free(). */
 void *comm_gather_each(const struct comm *comm, const void *own, size_t bytes);
 
-/* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is
- * where those of rank r begin, at[size] their number; at holds size + 1 ints. To be freed
- * with alloc_free(). */
-uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes,
-                         int *at);
+/* Collective. The records of all ranks, `count` of `bytes` bytes of this one, in the
+ * order of the ranks, on all ranks: `*all` of them. To be freed with alloc_free(). */
+void *comm_gather_all(const struct comm *comm, const void *own, int64_t count,
+                      size_t bytes, int64_t *all);
 
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);

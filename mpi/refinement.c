@@ -12,8 +12,6 @@
 #include "mpi/migrate.h"
 #include "geom/signals.h"
 
-#include <string.h>
-
 #include "geom/alloc.h"
 
 /* --- before a level --- */
@@ -97,18 +95,14 @@ static void share_splits(struct solver *solver)
     struct patch_id *split = alloc_array((size_t)made / 4, sizeof *split);
     for (int64_t p = solver->turn.shared; p < forest->count; p += 4)
         split[count++] = forest->patches[p].id;
-    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
-    uint8_t *all = comm_gather_all(comm, split, count * (int64_t)sizeof *split, at);
-    for (int i = 0; i < at[comm->size]; i += (int)sizeof *split) {
-        struct patch_id id;
-        memcpy(&id, all + i, sizeof id);
-        forest_reach(forest, id);
-    }
+    int64_t number;
+    struct patch_id *all =
+        comm_gather_all(comm, split, count, sizeof *split, &number);
+    for (int64_t i = 0; i < number; i++)
+        forest_reach(forest, all[i]);
     solver->turn.shared = forest->count;
-    solver->account.bytes[CARGO_LIGHT] +=
-        at[comm->size] - count * (int64_t)sizeof *split;
+    solver->account.bytes[CARGO_LIGHT] += (number - count) * (int64_t)sizeof *split;
     alloc_free(all);
-    alloc_free(at);
     alloc_free(split);
     account_end(&solver->account, PHASE_SCATTER);
 }

@@ -23,11 +23,8 @@ static int32_t *places_gather(const struct comm *comm, const struct scene *scene
     int32_t first = (int32_t)(all * comm->rank / comm->size);
     int32_t end = (int32_t)(all * (comm->rank + 1) / comm->size);
     int32_t *own = places_met(scene, octree, first, end);
-    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
-    int64_t bytes =
-        space_rays(scene) * (int64_t)(end - first) * (int64_t)sizeof *own;
-    void *met = comm_gather_all(comm, own, bytes, at);
-    alloc_free(at);
+    int64_t count = space_rays(scene) * (int64_t)(end - first);
+    void *met = comm_gather_all(comm, own, count, sizeof *own, &count);
     alloc_free(own);
     return met;
 }

@@ -95,15 +95,14 @@ static void share_cuts(struct solver *solver, struct cuts *cuts)
 {
     const struct comm *comm = solver->comm;
     int64_t regions = cuts->regions->count;
-    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    int64_t count;
     cuts_make(cuts, regions * comm->rank / comm->size,
               regions * (comm->rank + 1) / comm->size);
-    int64_t bytes = cuts->count * (int64_t)sizeof *cuts->nodes;
-    void *nodes = comm_gather_all(comm, cuts->nodes, bytes, at);
-    bytes = at[comm->size];
-    cuts_take(cuts, nodes, bytes / (int64_t)sizeof *cuts->nodes);
-    account_work(&solver->account, WORK_FINAL_GATHER, 0, bytes);
-    alloc_free(at);
+    struct cut_node *nodes =
+        comm_gather_all(comm, cuts->nodes, cuts->count, sizeof *nodes, &count);
+    cuts_take(cuts, nodes, count);
+    account_work(&solver->account, WORK_FINAL_GATHER, 0,
+                 count * (int64_t)sizeof *nodes);
 }
 
 struct looking {
