@@ -6,9 +6,9 @@
 # changes them. Memory: RSS counts what ranks share once for each of them, PSS once in all
 # (/proc/PID/smaps_rollup, some twenty times a second). What MPI takes by itself is that
 # of ranks that wait for rank 0 to read the scene from a pipe.
-# Knobs: RUNS, as NAME:TRIANGLES:RANKS:OPTIONS, with a comma for each space of options;
-# LARGE, a room whose memory is measured; SETTINGS, of that; ON, numbers of ranks there;
-# OUT, the page.
+# Knobs: RUNS, as NAME:TRIANGLES:RANKS:OPTIONS, with a comma for each space of options,
+# and an even number of ranks from 4 on; LARGE, a room whose memory is measured;
+# SETTINGS, of that; ON, numbers of ranks there, from 1; OUT, the page.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OUT:=docs/scaling.md}"
 : "${RUNS:=large:31933:32:--epsilon,1e-3,--final-gather,64

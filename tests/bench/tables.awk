@@ -243,9 +243,11 @@ END {
     print "\nPrices: the median of runs, the lowest and the highest.\n"
     print_prices()
     find_medians()
-    printf "\nLinking on %d ranks takes the slowest %.3f times the mean.\n", ranks[rows],
-           uneven
-    print "\nTable 1: seconds and speed-up without linking; speed-up with it.\n"
+    printf "\nLinking of the first room on %d ranks takes the slowest %.3f times the",
+           ranks[rows], uneven
+    print " mean; others are taken to be alike."
+    print "\nTable 1: seconds and speed-up without linking; speed-up with it. By turn:"
+    print "the least and the most, by the prices of each turn.\n"
     print_table_1()
     print "\nTable 2, seconds:\n"
     print_table_2()
