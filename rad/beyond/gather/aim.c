@@ -42,6 +42,7 @@ enum { VOLLEY = 4 };
  * the mean alone: its scatter around that is noise even where nothing is in the way. */
 struct volley {
     bool drawn;       /* the segments are draws */
+    struct rgb light; /* of one of its senders, W/m^2 */
     double direct[2]; /* light without blockers, known or expected, over all bands,
                          W/m^2 */
     double seen[2];   /* light with blockers */
@@ -67,7 +68,7 @@ static void add_segment(struct volley *volley, int i, int count, double direct,
  * scatter of single segments around the mean visible share, which for one draw alone is
  * 1; and by the difference of the two halves. Both have the colour of one sender of the
  * volley. */
-static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
+static void end_volley(struct receiver *r, struct volley *volley)
 {
     double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
     double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
@@ -82,7 +83,7 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
         apart = 0.5 * (volley->seen[0] / volley->direct[0] -
                        volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
-        double part = light.band[c] / rgb_sum(light), h = direct * part;
+        double part = volley->light.band[c] / rgb_sum(volley->light), h = direct * part;
         r->row->chance.band[c] += part * part * fmax(0.0, variance);
         r->row->halves.band[c] += h * h * apart * apart;
     }
@@ -339,7 +340,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct aim aim = {.senders = cuts->senders, .volleys[1].drawn = true};
     int32_t space = node_space(cuts->senders->model, r->row->leaf);
-    struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
+    struct rgb around = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node node = cuts->nodes[cut.first + i]; /* paths make cuts */
         double worth = offers[i].worth;
@@ -371,16 +372,17 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             *volley = fired; /* of another space, as ever: no doubt */
             continue;
         }
-        light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
+        struct rgb light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
+        volley->light = light;
         for (int c = 0; c < BANDS && none && r->kind != RECEIVER_LOOK; c++) {
             double h = direct * light.band[c] / rgb_sum(light);
             around.band[c] += h * h / count * share * (1.0 - share);
         }
         if (volley->count[0] + volley->count[1] >= VOLLEY)
-            end_volley(r, volley, light);
+            end_volley(r, volley);
     }
-    end_volley(r, &aim.volleys[0], light);
-    end_volley(r, &aim.volleys[1], light);
+    end_volley(r, &aim.volleys[0]);
+    end_volley(r, &aim.volleys[1]);
     for (int c = 0; c < BANDS; c++) {
         r->row->chance.band[c] = fmax(r->row->chance.band[c], around.band[c]);
         r->row->halves.band[c] = fmax(r->row->halves.band[c], around.band[c]);
