@@ -64,6 +64,11 @@ static void add_segment(struct volley *volley, int i, int count, double direct,
     volley->both += direct * seen;
 }
 
+static int segments_of(const struct volley *volley)
+{
+    return volley->count[0] + volley->count[1];
+}
+
 /* Adds the variance of the volley's light to the row, twice: as by chance, from the
  * scatter of single segments around the mean visible share, which for one draw alone is
  * 1; and by the difference of the two halves. Both have the colour of one sender of the
@@ -72,7 +77,7 @@ static void end_volley(struct receiver *r, struct volley *volley)
 {
     double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
     double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
-    int count = volley->count[0] + volley->count[1];
+    int count = segments_of(volley);
     if (volley->drawn && count == 1 && share > 0.0)
         share = 1.0;
     double variance =
@@ -359,6 +364,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
                                       hash_mix((uint64_t)node.node));
         aim.index = 0;
         aim_at_node(r, &aim, node.node, count, part, offers[i].factor);
+        while (drawn && segments_of(volley) < segments_of(&fired) + count)
+            add_segment(volley, 0, 1, aim.expected, 0.0); /* senders that look away */
         double direct = aim.direct - before.direct;
         bool none = aim.arrived == before.arrived;
         if (r->kind == RECEIVER_LOOK && cuts->tally) {
@@ -378,7 +385,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             double h = direct * light.band[c] / rgb_sum(light);
             around.band[c] += h * h / count * share * (1.0 - share);
         }
-        if (volley->count[0] + volley->count[1] >= VOLLEY)
+        if (segments_of(volley) >= VOLLEY)
             end_volley(r, volley);
     }
     end_volley(r, &aim.volleys[0]);
