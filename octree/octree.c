@@ -215,7 +215,8 @@ static void build_trees(struct octree *octree, const int32_t *order, const bool 
  * be, and again if some of them are not. */
 static void plant_trees(struct octree *octree, const int32_t *order, int32_t kept)
 {
-    bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull), right = true;
+    bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull);
+    bool proved = true;
     struct roofs found = {.octree = octree,
                           .reach = vec3_length(octree->middle) + octree->radius};
     struct far_corners far;
@@ -227,8 +228,8 @@ static void plant_trees(struct octree *octree, const int32_t *order, int32_t kep
         found.corner = octree->triangles[order[0]].corner[0];
     for (int32_t i = 0; i < kept && !stop_is_asked(); i++)
         if (on_hull[i] && !is_on_hull(&found, &octree->planes[order[i]]))
-            on_hull[i] = right = false;
-    if (!right)
+            on_hull[i] = proved = false;
+    if (!proved)
         build_trees(octree, order, on_hull, kept);
     alloc_free(on_hull);
 }

@@ -90,7 +90,8 @@ static uint8_t *find_open_roots(struct solver *solver, struct final_gather *gath
 
 /* --- looks --- */
 
-/* Collective. Each rank makes the cuts of some regions, and all get them. */
+/* Collective. Each rank makes the cuts of some regions, and all get them. Pre: there are
+ * none. */
 static void share_cuts(struct solver *solver, struct cuts *cuts)
 {
     const struct comm *comm = solver->comm;

@@ -45,7 +45,7 @@ struct sharing {
     double mean;   /* worth of a leaf that gets the mean number of shots */
 };
 
-/* Rising. */
+/* Rising; equal ones are alike. */
 static int compare_worths(const void *left, const void *right)
 {
     const double *a = left, *b = right;
