@@ -97,7 +97,8 @@ build/room "$LARGE" 1 >"$work/weighed.obj"
 {
     echo
     echo "MB of all ranks, room of $(grep -c '^f' "$work/weighed.obj") triangles," \
-        "\`$SETTINGS -o room.ply\`:"
+        "\`$SETTINGS -o room.ply\`. RSS has what" \
+        "ranks share once for each of them, PSS once in all:"
     echo
     echo "| ranks | RSS | PSS | of these MPI's | PSS, of one rank |"
     echo "|---|---|---|---|---|"
