@@ -21,8 +21,7 @@ number_of() { grep -o "\"$2\": *[0-9.e+-]*" "$1" | head -n 1 | sed 's/.*: *//'; 
 # most_of FILE PHASE: the seconds of the slowest rank.
 most_of() { sed -n "s/.*\"$2\": {.*\"max\": \([0-9.e+-]*\)}.*/\1/p" "$1"; }
 
-# all_of FILE KIND: the work of all ranks; first levels, which all ranks split alike,
-# count once.
+# all_of FILE KIND: the work of all ranks.
 all_of() { sed -n "s/.*\"$2\": {\"phases\": [0-9]*, \"all\": \([0-9]*\).*/\1/p" "$1"; }
 
 # grow SIZE EPSILON: one run and its line.
@@ -30,11 +29,10 @@ grow() {
     epsilon=$2 json=$work/$1-$2.json
     $MPIEXEC -n 2 ./phr "$work/room$1.obj" --epsilon "$2" --quiet -o "$work/room.ppm" \
         --stats "$json"
-    first=$(($(all_of "$json" linking) / 2))
     tests=$(($(number_of "$json" node_tests) + $(number_of "$json" triangle_tests)))
     echo "room,$epsilon,$(number_of "$json" triangles),$(number_of "$json" patches)," \
         "$(number_of "$json" links),$(number_of "$json" rays),$tests," \
-        "$((first + $(all_of "$json" splitting)))," \
+        "$(all_of "$json" splitting)," \
         "$(number_of "$json" peak_rss_bytes_sum),$(most_of "$json" tree)," \
         "$(most_of "$json" refinement),$(most_of "$json" total)" |
         tr -d ' ' | tee -a "$CSV"
