@@ -236,11 +236,11 @@ chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 front: $(PHR) $(IMGDIFF) pathtracer build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/front.sh
 
-# About eight minutes on two cores.
+# About five minutes on two cores.
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
 
-# About eight minutes on two cores; ROOM=1000000 takes 14.
+# About five minutes on two cores.
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/repeated.sh

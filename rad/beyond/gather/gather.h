@@ -83,7 +83,7 @@ struct shot {
 /* The light of a node of a cut at a receiver, with nothing in the way. */
 struct offer {
     double worth;  /* by which segments are dealt, over all bands, W/m^2 */
-    double light;  /* of the node, nothing in the way, the same */
+    double light;  /* of the node, nothing in the way, over all bands, W/m^2 */
     double factor; /* the exact form factor of a single near sender, 1; else -1 */
     double blind;  /* see cuts_blind_part() */
     double found;  /* see cut_found() */
