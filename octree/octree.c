@@ -137,44 +137,37 @@ static bool is_on_hull(struct roofs *roofs, const struct plane *plane)
            !reaches_above(roofs, back, -plane->offset);
 }
 
-/* Corners farthest out in some directions, one after the other to both sides. */
-enum { LINES = 7 };
-
-struct far_corners {
-    struct vec3 corner[2 * LINES];
-};
+/* Directions in which the farthest corners are looked for, to both sides. */
+enum { LINES = 7, FAR_CORNERS = 2 * LINES };
 
 static void find_far_corners(const struct octree *octree, const int32_t *order,
-                             int32_t count, struct far_corners *far)
+                             int32_t count, struct vec3 far[FAR_CORNERS])
 {
     static const struct vec3 line[LINES] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1},
                                             {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
-    double most[2 * LINES];
-    for (int k = 0; k < 2 * LINES; k++)
-        most[k] = -HUGE_VAL;
+    double most[FAR_CORNERS] = {0.0};
     for (int64_t i = 0; i < 3 * (int64_t)count; i++) {
         struct vec3 x = octree->triangles[order[i / 3]].corner[i % 3];
-        for (int k = 0; k < 2 * LINES; k++) {
+        for (int k = 0; k < FAR_CORNERS; k++) {
             double along = (k % 2 ? -1.0 : 1.0) * vec3_dot(line[k / 2], x);
-            if (along > most[k]) {
+            if (i == 0 || along > most[k]) {
                 most[k] = along;
-                far->corner[k] = x;
+                far[k] = x;
             }
         }
     }
 }
 
-/* True if there are far corners on both sides of the plane: most triangles are told apart
- * from the hull by this. */
-static bool is_between(const struct far_corners *far, const struct plane *plane)
+/* True if far corners are on both sides of the plane, as of most triangles that are not
+ * on the hull. */
+static bool is_between(const struct vec3 far[FAR_CORNERS], const struct plane *plane)
 {
-    bool front = false, back = false;
-    for (int k = 0; k < 2 * LINES && !(front && back); k++) {
-        double height = plane_distance(plane, far->corner[k]);
-        front = front || height > HULL_MARGIN;
-        back = back || height < -HULL_MARGIN;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int k = 0; k < FAR_CORNERS; k++) {
+        low = real_min(low, plane_distance(plane, far[k]));
+        high = real_max(high, plane_distance(plane, far[k]));
     }
-    return front && back;
+    return low < -HULL_MARGIN && high > HULL_MARGIN;
 }
 
 /* --- building --- */
@@ -215,17 +208,14 @@ static void build_trees(struct octree *octree, const int32_t *order, const bool 
  * be, and again if some of them are not. */
 static void plant_trees(struct octree *octree, const int32_t *order, int32_t kept)
 {
-    bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull);
-    bool proved = true;
-    struct roofs found = {.octree = octree,
+    bool *on_hull = alloc_array((size_t)kept, sizeof *on_hull), proved = true;
+    struct vec3 far[FAR_CORNERS] = {{0.0, 0.0, 0.0}};
+    find_far_corners(octree, order, kept, far);
+    struct roofs found = {.octree = octree, .corner = far[0],
                           .reach = vec3_length(octree->middle) + octree->radius};
-    struct far_corners far;
-    find_far_corners(octree, order, kept, &far);
     for (int32_t i = 0; i < kept; i++)
-        on_hull[i] = !is_between(&far, &octree->planes[order[i]]);
+        on_hull[i] = !is_between(far, &octree->planes[order[i]]);
     build_trees(octree, order, on_hull, kept);
-    if (kept > 0)
-        found.corner = octree->triangles[order[0]].corner[0];
     for (int32_t i = 0; i < kept && !stop_is_asked(); i++)
         if (on_hull[i] && !is_on_hull(&found, &octree->planes[order[i]]))
             on_hull[i] = proved = false;

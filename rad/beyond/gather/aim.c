@@ -228,7 +228,8 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
 }
 
 /* Fires `count` segments at a node of the cut, for `share` of its light, spread evenly
- * over its power: the first half takes every other place, the second the rest. `factor`: of a single sender the exact one, or -1. */
+ * over its power: the first half takes every other place, the second the rest. `factor`:
+ * of a single sender the exact one, or -1. */
 static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int count,
                         double share, double factor)
 {
