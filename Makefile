@@ -245,7 +245,7 @@ scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/repeated.sh
 
-# About ten minutes on two cores, three of them for linking all pairs.
+# About twelve minutes on two cores, three of them for linking all pairs.
 tables: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
