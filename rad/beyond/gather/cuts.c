@@ -174,21 +174,22 @@ double cut_found(const struct cut *cut, const struct cut_node *node, double blin
 static void find_shares(struct cuts *cuts, int32_t region)
 {
     struct cut *cut = &cuts->cuts[region];
-    struct cut_node *nodes = cuts->nodes + cut->first;
     int32_t space = node_space(cuts->senders->model, cuts->regions->nodes[region]);
+    int64_t end = cut->first + cut->count;
     double upto = 0.0, arrived = 0.5, asked = 1.0;
-    for (int64_t i = 0; i < cut->count; i++) {
-        arrived += nodes[i].arrived;
-        asked += nodes[i].asked;
+    for (int64_t i = cut->first; i < end; i++) {
+        arrived += cuts->nodes[i].arrived;
+        asked += cuts->nodes[i].asked;
     }
     cut->mean = arrived / asked;
-    for (int64_t i = 0; i < cut->count; i++) {
-        const struct sender_node *at = &cuts->senders->nodes[nodes[i].node];
-        double light = nodes[i].worth;
-        if (nodes[i].arrived == 0)
+    for (int64_t i = cut->first; i < end; i++) {
+        struct cut_node *node = &cuts->nodes[i];
+        const struct sender_node *at = &cuts->senders->nodes[node->node];
+        double light = node->worth;
+        if (node->arrived == 0)
             light *= cuts_blind_part(cuts->senders, at, space);
-        upto += light * sqrt(cut_seen(cut, &nodes[i]));
-        nodes[i].upto = upto;
+        upto += light * sqrt(cut_seen(cut, node));
+        node->upto = upto;
     }
 }
 
